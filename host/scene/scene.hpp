@@ -1,0 +1,114 @@
+// The scene as plain data, already checked, in world space. Lengths are millimetres, wavelengths nanometres.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/core/spectrum.hpp"
+
+namespace stokes {
+
+struct Camera {  // pinhole
+    glm::dvec3 position_mm{0.0};
+    glm::dvec3 target_mm{0.0, 0.0, -1.0};
+    glm::dvec3 up{0.0, 1.0, 0.0};
+    double vertical_fov_deg = 40.0;
+};
+
+struct Film {
+    int width = 512;   // pixels
+    int height = 512;  // pixels
+    std::optional<double> exposure_ev;  // of the PNG; none: automatic
+};
+
+// Which subsurface transport the scene's translucent materials use.
+enum class Transport { paper };
+
+struct RenderSettings {
+    int passes = 64;
+    std::int64_t photons_per_pass = 262144;
+    double alpha = 2.0 / 3.0;
+    std::optional<double> radius_mm;  // first radius; none: derived from the scene
+    std::uint32_t seed = 1;
+    int lambda_min_nm = 300;  // inclusive
+    int lambda_max_nm = 780;  // inclusive
+    Transport transport = Transport::paper;
+};
+
+// sigma_s and sigma_a [1/mm] with the scene's scale factors already applied.
+struct Medium {
+    std::string name;
+    Spectrum sigma_s;
+    Spectrum sigma_a;
+    double eta = 1.0;         // refractive index, for the refraction angle
+    double dipole_eta = 1.0;  // refractive index in the dipole's A; 1 where the Fresnel factor is taken as 1
+};
+
+struct Fluorophore {
+    std::string name;
+    Spectrum excitation;         // relative
+    Spectrum emission;           // relative
+    double conversion = 2.0e-2;  // eta of eq. 1 [1/nm]
+};
+
+enum class MaterialKind { black, diffuse, translucent };
+
+struct Material {
+    std::string name;
+    MaterialKind kind = MaterialKind::black;
+    Spectrum reflectance = Spectrum::constant(0.0);  // diffuse: in [0, 1]
+    int medium = -1;                                 // translucent with subsurface: index into Scene::media
+    int fluorophore = -1;                            // translucent: index into Scene::fluorophores, -1: none
+    double fluorescent_fraction = 0.0;               // c in [0, 1]
+    bool subsurface = true;                          // false: surface fluorescence, light leaves where it came in
+};
+
+struct Mesh {
+    std::vector<glm::vec3> positions_mm;
+    std::vector<glm::uvec3> triangles;  // counter-clockwise seen from outside
+};
+
+// Shapes with the same body exchange light below their surfaces: an exit point may lie on any of them.
+struct Shape {
+    std::string name;
+    int material = -1;
+    int body = -1;
+    int light = -1;  // index into Scene::lights when this shape is the surface of an emitter
+    Mesh mesh;
+};
+
+enum class LightKind { beam, surface };
+enum class BeamSection { disk, rectangle };
+
+struct Light {
+    std::string name;
+    LightKind kind = LightKind::surface;
+    Spectrum flux;  // absolute spectral flux [W/nm], over the whole light
+    // surface: one-sided diffuse emission from the front of this shape
+    int shape = -1;
+    // beam: parallel light through a flat cross-section at right angles to direction
+    BeamSection section = BeamSection::disk;
+    glm::dvec3 position_mm{0.0};  // centre of the cross-section
+    glm::dvec3 direction{0.0, -1.0, 0.0};
+    glm::dvec3 half_u_mm{0.0};  // half-axes of the cross-section: of the disk its radii, of the rectangle half its sides
+    glm::dvec3 half_v_mm{0.0};
+};
+
+struct Scene {
+    std::string file;  // as given on the command line
+    RenderSettings render;
+    Film film;
+    Camera camera;
+    std::vector<Medium> media;
+    std::vector<Fluorophore> fluorophores;
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+    std::vector<Shape> shapes;
+    int body_count = 0;
+};
+
+}  // namespace stokes

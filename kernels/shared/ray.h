@@ -1,0 +1,34 @@
+// Rays, hits and triangles as they travel between kernels.
+#ifndef STOKES_SHARED_RAY_H
+#define STOKES_SHARED_RAY_H
+
+// A ray segment. Written by emit_photons, scatter_*, sample_exits, camera_rays; read by trace_*.
+// t_max < t_min marks a ray that is not to be traced.
+typedef struct Ray {
+    float ox, oy, oz;  // origin [mm]
+    float t_min;       // [mm]
+    float dx, dy, dz;  // direction, unit length
+    float t_max;       // [mm], may be infinite
+} Ray;
+STOKES_ASSERT_SIZE(Ray, 32);
+
+// The nearest intersection: point = v0 + u e1 + v e2. Written by trace_*.
+typedef struct Hit {
+    float t;                // distance along the ray [mm]; undefined without a hit
+    float u, v;             // barycentric coordinates of v1 and v2
+    unsigned int triangle;  // index into the Triangle buffer, STOKES_NONE: the ray leaves the scene
+} Hit;
+STOKES_ASSERT_SIZE(Hit, 16);
+
+// One triangle of the scene, in the order of the scene's shapes. Written by the host once per scene.
+typedef struct Triangle {
+    float v0x, v0y, v0z;  // first vertex [mm]
+    unsigned int shape;   // index into the ShapeRecord buffer
+    float e1x, e1y, e1z;  // v1 - v0 [mm]; the geometric normal is e1 x e2, outward
+    unsigned int body;    // shapes of one body share subsurface light
+    float e2x, e2y, e2z;  // v2 - v0 [mm]
+    unsigned int pad;
+} Triangle;
+STOKES_ASSERT_SIZE(Triangle, 48);
+
+#endif

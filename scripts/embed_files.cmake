@@ -1,0 +1,18 @@
+# Writes OUTPUT, a C++ file that holds FILES (paths below ROOT) as text: stokes::embedded_files().
+# String literals have a length limit in some compilers, so a file is cut into pieces of whole characters.
+set(body "#include \"host/core/embedded.hpp\"\n\nnamespace stokes {\n\nconst std::map<std::string, std::string>& embedded_files() {\n    static const std::map<std::string, std::string> files = {\n")
+foreach(file IN LISTS FILES)
+  file(RELATIVE_PATH name ${ROOT} ${file})
+  file(READ ${file} text)
+  string(APPEND body "        {\"${name}\", std::string()")
+  string(LENGTH "${text}" length)
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${text}" ${at} 8000 piece)
+    string(APPEND body "\n             + R\"__stokes(${piece})__stokes\"")
+    math(EXPR at "${at} + 8000")
+  endwhile()
+  string(APPEND body "},\n")
+endforeach()
+string(APPEND body "    };\n    return files;\n}\n\n}  // namespace stokes\n")
+file(WRITE ${OUTPUT} "${body}")
