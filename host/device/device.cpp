@@ -1,0 +1,199 @@
+#include "host/device/device.hpp"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "host/core/log.hpp"
+
+namespace stokes {
+
+namespace {
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+std::string trimmed(std::string text) {
+    while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
+    return text;
+}
+
+// PoCL dies with a signal when its kernel cache cannot be written, so that is found out first.
+void prepare_pocl_cache() {
+    const auto writable = [](const std::string& directory) {
+        return ::access(directory.c_str(), W_OK | X_OK) == 0;
+    };
+    std::string directory;
+    if (const char* chosen = ::getenv("POCL_CACHE_DIR")) {
+        directory = chosen;
+    } else if (const char* cache = ::getenv("XDG_CACHE_HOME")) {
+        directory = std::string(cache);
+    } else if (const char* home = ::getenv("HOME")) {
+        directory = std::string(home);
+        if (writable(directory + "/.cache")) directory += "/.cache";
+        if (writable(directory + "/pocl")) directory += "/pocl";
+    }
+    if (!directory.empty() && writable(directory)) return;
+    const char* temporary = ::getenv("TMPDIR");
+    std::string pattern = std::string(temporary && *temporary ? temporary : "/tmp") + "/stokes-pocl-XXXXXX";
+    if (::mkdtemp(pattern.data()) == nullptr)
+        throw RunError(pattern + ": no folder for compiled kernels can be made");
+    ::setenv("POCL_CACHE_DIR", pattern.c_str(), 1);
+    warn("the folder for compiled kernels, " + (directory.empty() ? "$HOME" : directory) +
+         ", cannot be written; this run compiles into " + pattern);
+}
+
+// A name PoCL does not know in POCL_DEVICES ends the process with a signal.
+void check_pocl_devices() {
+    const char* chosen = ::getenv("POCL_DEVICES");
+    if (chosen == nullptr || *chosen == '\0') return;
+    std::string word;
+    for (const char* c = chosen;; ++c) {
+        if (*c != ' ' && *c != '\0') {
+            word += *c;
+            continue;
+        }
+        if (!word.empty() && word != "pthread" && word != "basic" && word != "cuda" && word != "ttasim")
+            throw InputError("POCL_DEVICES: \"" + word +
+                             "\" is not a PoCL device; expected pthread or basic");
+        word.clear();
+        if (*c == '\0') return;
+    }
+}
+
+struct Found {
+    DeviceDescription description;
+    cl::Device device;
+};
+
+DeviceDescription describe(const cl::Platform& platform, const cl::Device& device, std::size_t p,
+                           std::size_t d) {
+    DeviceDescription result;
+    result.selector = std::to_string(p) + ":" + std::to_string(d);
+    result.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+    result.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    result.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+    result.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+    result.cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+    result.gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
+    result.available = device.getInfo<CL_DEVICE_AVAILABLE>() != 0;
+    result.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    result.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    result.largest_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    return result;
+}
+
+std::vector<Found> find_devices() {
+    check_pocl_devices();
+    prepare_pocl_cache();
+    std::vector<Found> result;
+    try {
+        std::vector<cl::Platform> platforms;
+        cl::Platform::get(&platforms);
+        for (std::size_t p = 0; p < platforms.size(); ++p) {
+            std::vector<cl::Device> devices;
+            try {
+                platforms[p].getDevices(CL_DEVICE_TYPE_ALL, &devices);
+            } catch (const cl::Error& error) {
+                if (error.err() != CL_DEVICE_NOT_FOUND) throw;
+            }
+            for (std::size_t d = 0; d < devices.size(); ++d)
+                result.push_back({describe(platforms[p], devices[d], p, d), devices[d]});
+        }
+    } catch (const cl::Error& error) {
+        if (error.err() != -1001)
+            throw RunError("OpenCL: " + std::string(error.what()) + " failed with error " +
+                           std::to_string(error.err()));
+    }
+    if (result.empty())
+        throw RunError(
+            "no OpenCL device was found; install a driver, for the CPU the package pocl-opencl-icd");
+    return result;
+}
+
+const Found& choose(const std::vector<Found>& found, const std::string& selector) {
+    const std::string wanted = lower(selector);
+    const auto is = [&](const Found& f) {
+        const DeviceDescription& d = f.description;
+        if (!d.available) return false;
+        if (wanted.empty() || wanted == "cpu") return d.cpu;
+        if (wanted == "gpu") return d.gpu;
+        return d.selector == wanted || lower(d.platform + " " + d.name).find(wanted) != std::string::npos;
+    };
+    const auto match = std::find_if(found.begin(), found.end(), is);
+    if (match != found.end()) return *match;
+    if (wanted.empty()) return found.front();
+    std::string known;
+    for (const Found& f : found) known += "\n  " + f.description.selector + "  " + f.description.name;
+    throw InputError("--device: no device matches \"" + selector + "\"; there are:" + known);
+}
+
+}  // namespace
+
+std::vector<DeviceDescription> list_devices() {
+    std::vector<DeviceDescription> result;
+    for (const Found& found : find_devices()) result.push_back(found.description);
+    return result;
+}
+
+Device Device::open(const std::string& selector, int threads) {
+    if (threads > 0) ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+    const std::vector<Found> found = find_devices();
+    const Found& chosen = choose(found, selector);
+    Device result;
+    result.shared_ = std::make_shared<Shared>();
+    Shared& shared = *result.shared_;
+    shared.description = chosen.description;
+    shared.device = chosen.device;
+    try {
+        shared.context = cl::Context(chosen.device);
+        shared.queue = cl::CommandQueue(shared.context, chosen.device, CL_QUEUE_PROFILING_ENABLE);
+    } catch (const cl::Error& error) {
+        throw RunError(shared.description.name + ": " + error.what() + " failed with OpenCL error " +
+                       std::to_string(error.err()));
+    }
+    shared.memory_budget = shared.description.memory_bytes / 4 * 3;
+    return result;
+}
+
+void Device::finish() const {
+    try {
+        shared_->queue.finish();
+    } catch (const cl::Error& error) {
+        throw RunError(shared_->description.name + ": a kernel failed, OpenCL error " +
+                       std::to_string(error.err()));
+    }
+    collect();
+}
+
+void Device::record(const std::string& kernel_name, const cl::Event& event) {
+    shared_->pending.emplace_back(kernel_name, event);
+}
+
+void Device::collect() const {
+    for (const auto& [name, event] : shared_->pending) {
+        StageTime& time = shared_->stage_times[name];
+        const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+        const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+        time.seconds += end > start ? static_cast<double>(end - start) * 1e-9 : 0.0;
+        ++time.launches;
+    }
+    shared_->pending.clear();
+}
+
+const std::map<std::string, StageTime>& Device::stage_times() const {
+    finish();
+    return shared_->stage_times;
+}
+
+void Device::reset_stage_times() {
+    finish();
+    shared_->stage_times.clear();
+}
+
+}  // namespace stokes

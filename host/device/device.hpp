@@ -1,0 +1,210 @@
+// Everything that says cl::. A device with its queue, typed buffers, programs and kernel launches.
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "host/core/error.hpp"
+
+namespace stokes {
+
+// Sixteen spectral values as kernels see them: a float16.
+struct alignas(64) Flux16 {
+    float v[16];
+};
+
+struct DeviceDescription {
+    std::string selector;  // "platform:device"
+    std::string platform, name, version, driver;
+    bool cpu = false, gpu = false, available = false;
+    unsigned compute_units = 0;
+    std::uint64_t memory_bytes = 0, largest_allocation_bytes = 0;
+};
+
+// All OpenCL devices, in the order of platforms and devices. RunError when there is no OpenCL driver at all.
+std::vector<DeviceDescription> list_devices();
+
+struct StageTime {
+    double seconds = 0.0;
+    std::uint64_t launches = 0;
+};
+
+// One opened device. Copies share the same queue. Launches and transfers run in order.
+class Device {
+  public:
+    // selector: "" (first CPU, else first device), "platform:device" index, "cpu", "gpu", or part of a name
+    // (case-insensitive). threads: CPU threads, 0 for all; only before the first open in a process.
+    // InputError for a selector that matches nothing, RunError for driver failures.
+    static Device open(const std::string& selector, int threads = 0);
+
+    const DeviceDescription& description() const { return shared_->description; }
+    const cl::Context& context() const { return shared_->context; }
+    const cl::CommandQueue& queue() const { return shared_->queue; }
+
+    // Waits for all launches.
+    void finish() const;
+
+    // Directory to read kernels from in place of the embedded text; empty: embedded.
+    void set_kernel_directory(const std::string& directory) { shared_->kernel_directory = directory; }
+    const std::string& kernel_directory() const { return shared_->kernel_directory; }
+
+    // Work-items per work-group of every launch; results never depend on it.
+    void set_local_size(std::size_t size) { shared_->local_size = size; }
+    std::size_t local_size() const { return shared_->local_size; }
+
+    // Measured seconds per kernel name, gathered from the driver's profile when this is called or finish()
+    // was.
+    const std::map<std::string, StageTime>& stage_times() const;
+    void reset_stage_times();
+    void record(const std::string& kernel_name, const cl::Event& event);
+
+    // Memory budget [bytes] for all buffers together; allocation above it is an InputError that names the
+    // buffer.
+    void set_memory_budget(std::uint64_t bytes) { shared_->memory_budget = bytes; }
+    std::uint64_t memory_in_use() const { return shared_->memory_in_use; }
+
+  private:
+    friend class Allocation;
+    struct Shared {
+        DeviceDescription description;
+        cl::Device device;
+        cl::Context context;
+        cl::CommandQueue queue;
+        std::string kernel_directory;
+        std::size_t local_size = 64;
+        std::uint64_t memory_budget = 0, memory_in_use = 0;
+        std::map<std::string, StageTime> stage_times;
+        std::vector<std::pair<std::string, cl::Event>> pending;
+    };
+    void collect() const;
+    std::shared_ptr<Shared> shared_;
+};
+
+// Memory behind a buffer: host memory that a CPU device uses in place (huge pages), device memory elsewhere.
+class Allocation {
+  public:
+    Allocation() = default;
+    Allocation(const Device& device, const std::string& name, std::size_t bytes);
+    const cl::Buffer& buffer() const { return owner_->buffer; }
+    const Device& device() const { return owner_->device; }
+    void write(const void* data, std::size_t bytes, std::size_t offset) const;
+    void read(void* data, std::size_t bytes, std::size_t offset) const;
+
+  private:
+    struct Owner {
+        Device device;
+        std::string name;
+        std::size_t bytes = 0;
+        void* host = nullptr;
+        cl::Buffer buffer;
+        ~Owner();
+    };
+    std::shared_ptr<Owner> owner_;
+};
+
+// count elements of T on the device, contents undefined until written. Copies share the memory.
+template <class T>
+class Buffer {
+    static_assert(std::is_trivially_copyable<T>::value, "device data is plain data");
+
+  public:
+    Buffer() = default;
+    Buffer(const Device& device, const std::string& name, std::size_t count)
+        : allocation_(device, name, std::max<std::size_t>(count, 1) * sizeof(T)), size_(count) {}
+    Buffer(const Device& device, const std::string& name, const std::vector<T>& data)
+        : Buffer(device, name, data.size()) {
+        upload(data);
+    }
+
+    std::size_t size() const { return size_; }
+    const cl::Buffer& cl_buffer() const { return allocation_.buffer(); }
+
+    void upload(const T* data, std::size_t count, std::size_t offset = 0) const {
+        check(count, offset);
+        if (count > 0) allocation_.write(data, count * sizeof(T), offset * sizeof(T));
+    }
+    void upload(const std::vector<T>& data) const { upload(data.data(), data.size()); }
+    std::vector<T> download() const { return download(size_); }
+    std::vector<T> download(std::size_t count, std::size_t offset = 0) const {
+        check(count, offset);
+        std::vector<T> result(count);
+        if (count > 0) allocation_.read(result.data(), count * sizeof(T), offset * sizeof(T));
+        return result;
+    }
+
+  private:
+    void check(std::size_t count, std::size_t offset) const {
+        if (offset > size_ || count > size_ - offset) throw RunError("transfer outside of a device buffer");
+    }
+    Allocation allocation_;
+    std::size_t size_ = 0;
+};
+
+class Kernel {
+  public:
+    Kernel() = default;
+    Kernel(Device device, cl::Kernel kernel, std::string name);
+
+    // Runs work_items work-items with args in the kernel's order (buffers, or scalars and structs by value).
+    // The global size is rounded up to the local size: kernels guard with their own count. Asynchronous.
+    template <class... Args>
+    void launch(std::size_t work_items, const Args&... args) {
+        if (work_items == 0) return;
+        cl_uint index = 0;
+        (set(index++, args), ...);
+        enqueue(work_items);
+    }
+    const std::string& name() const { return name_; }
+
+  private:
+    template <class T>
+    void set(cl_uint index, const Buffer<T>& buffer) {
+        set_bytes(index, sizeof(cl_mem), &buffer.cl_buffer()());
+    }
+    template <class T>
+    void set(cl_uint index, const T& value) {
+        static_assert(std::is_trivially_copyable<T>::value, "kernel arguments are plain data");
+        static_assert(!std::is_same<T, bool>::value && !std::is_same<T, double>::value && sizeof(T) % 4 == 0,
+                      "kernel arguments are 32-bit words");
+        set_bytes(index, sizeof(T), &value);
+    }
+    void set_bytes(cl_uint index, std::size_t bytes, const void* data);
+    void enqueue(std::size_t work_items);
+
+    Device device_;
+    cl::Kernel kernel_;
+    std::string name_;
+};
+
+class Program {
+  public:
+    // file: below kernels/, for example "trace_rays.cl". options: extra compiler options such as "-DWIDTH=8".
+    // RunError with the compiler's log when it does not build.
+    Program(const Device& device, const std::string& file, const std::vector<std::string>& options = {});
+    static Program from_source(const Device& device, const std::string& name, const std::string& text,
+                               const std::vector<std::string>& options = {});
+    Kernel kernel(const std::string& name) const;
+
+  private:
+    explicit Program(const Device& device) : device_(device) {}
+    void build(const std::string& name, const std::string& text, const std::vector<std::string>& options);
+    Device device_;
+    cl::Program program_;
+    std::string file_;
+};
+
+// Text of a kernel file with its #include "..." lines replaced by the files' text (each once), #line kept.
+// directory: where kernels are read from, empty for the embedded ones. RunError for a file that is not there.
+std::string expand_kernel_source(const std::string& name, const std::string& text,
+                                 const std::string& directory);
+std::string read_kernel_file(const std::string& file, const std::string& directory);
+
+}  // namespace stokes

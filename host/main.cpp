@@ -1,0 +1,2 @@
+// stokes: spectral rendering of fluorescence on translucent materials.
+int main() { return 0; }

@@ -1,0 +1,22 @@
+#include "tests/support/device_fixture.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace stokes {
+
+Device& test_device() {
+    static Device device = Device::open("cpu");
+    return device;
+}
+
+Program test_program(const std::string& name, const std::vector<std::string>& options) {
+    const std::string path = std::string(STOKES_SOURCE_DIR) + "/tests/kernel/" + name;
+    std::ifstream in(path);
+    if (!in) throw RunError(path + ": cannot read this test kernel");
+    std::ostringstream text;
+    text << in.rdbuf();
+    return Program::from_source(test_device(), name, text.str(), options);
+}
+
+}  // namespace stokes
