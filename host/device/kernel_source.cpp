@@ -13,12 +13,14 @@ void expand(const std::string& name, const std::string& text, const std::string&
             std::set<std::string>& seen, std::string& out) {
     std::istringstream lines(text);
     std::string line;
+    const std::string folder = name.substr(0, name.rfind('/') + 1);  // of the including file; "" at the top
     out += "#line 1 \"kernels/" + name + "\"\n";
     for (int number = 1; std::getline(lines, line); ++number) {
         const std::size_t hash = line.find_first_not_of(" \t");
         if (hash != std::string::npos && line.compare(hash, 10, "#include \"") == 0) {
             const std::size_t first = hash + 10;
-            const std::string included = line.substr(first, line.find('"', first) - first);
+            const std::string written = line.substr(first, line.find('"', first) - first);
+            const std::string included = written.find('/') == std::string::npos ? folder + written : written;
             if (seen.insert(included).second) {
                 expand(included, read_kernel_file(included, directory), directory, seen, out);
                 out += "#line " + std::to_string(number + 1) + " \"kernels/" + name + "\"\n";

@@ -2,6 +2,8 @@
 #ifndef STOKES_SHARED_BVH_H
 #define STOKES_SHARED_BVH_H
 
+#include "limits.h"
+
 // Children are node indices; with STOKES_BVH_LEAF set, the low bits are the index of a block of triangles.
 #define STOKES_BVH_WIDTH 16
 #define STOKES_BVH_LEAF 0x80000000u

@@ -2,6 +2,8 @@
 #ifndef STOKES_SHARED_MATERIAL_H
 #define STOKES_SHARED_MATERIAL_H
 
+#include "limits.h"
+
 // MaterialRecord.kind
 #define STOKES_BLACK 0u
 #define STOKES_DIFFUSE 1u
@@ -16,14 +18,16 @@ typedef struct ShapeRecord {
 } ShapeRecord;
 STOKES_ASSERT_SIZE(ShapeRecord, 16);
 
-// Written by the host once per scene. Spectra of a material live in per-pass buffers of 16 wavelengths.
+// Written by the host once per scene. A "row" is an index into the pass's spectra: one float16, the value at each
+// of the pass's wavelengths. Row i is the reflectance of material i.
 typedef struct MaterialRecord {
-    unsigned int kind;           // STOKES_BLACK, STOKES_DIFFUSE or STOKES_TRANSLUCENT
-    unsigned int fluorophore;    // index of its re-radiation matrix, or STOKES_NONE
-    unsigned int tables;         // index of its medium's power tables (MediumTables), or STOKES_NONE: no subsurface
-    float fluorescent_fraction;  // c in [0, 1]: probability of meeting a fluorophore
-    float eta;                   // refractive index, for the refraction angle
-    unsigned int pad0, pad1, pad2;
+    unsigned int kind;             // STOKES_BLACK, STOKES_DIFFUSE or STOKES_TRANSLUCENT
+    unsigned int medium;           // index into the MediumTables buffer, or STOKES_NONE: no subsurface
+    float fluorescent_fraction;    // c in [0, 1]: probability of meeting a fluorophore
+    float eta;                     // refractive index, for the refraction angle
+    unsigned int excitation_row;   // of its fluorophore, or STOKES_NONE without one
+    unsigned int reradiation_row;  // first of 16 rows, one an excitation wavelength: flux there -> emitted flux
+    unsigned int pad0, pad1;
 } MaterialRecord;
 STOKES_ASSERT_SIZE(MaterialRecord, 32);
 

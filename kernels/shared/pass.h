@@ -2,6 +2,8 @@
 #ifndef STOKES_SHARED_PASS_H
 #define STOKES_SHARED_PASS_H
 
+#include "limits.h"
+
 // Written by the host once per pass.
 typedef struct PassConstants {
     float lambda_nm[16];  // the pass's wavelengths, increasing

@@ -2,6 +2,8 @@
 #ifndef STOKES_SHARED_PHOTON_H
 #define STOKES_SHARED_PHOTON_H
 
+#include "limits.h"
+
 // The maps, and the film's layers, in this order everywhere.
 #define STOKES_MAP_FLUORESCENCE 0
 #define STOKES_MAP_SINGLE 1

@@ -2,6 +2,8 @@
 #ifndef STOKES_SHARED_RAY_H
 #define STOKES_SHARED_RAY_H
 
+#include "limits.h"
+
 // A ray segment. Written by emit_photons, scatter_*, sample_exits, camera_rays; read by trace_*.
 // t_max < t_min marks a ray that is not to be traced.
 typedef struct Ray {
@@ -19,6 +21,16 @@ typedef struct Hit {
     unsigned int triangle;  // index into the Triangle buffer, STOKES_NONE: the ray leaves the scene
 } Hit;
 STOKES_ASSERT_SIZE(Hit, 16);
+
+// A search for the surface of a body near a point of its tangent plane. Written by sample_exits, read by trace_probe.
+// reach_mm < 0 marks a probe that is not to be traced.
+typedef struct Probe {
+    float x, y, z;      // point on the tangent plane [mm]
+    float reach_mm;     // how far to look to either side [mm]
+    float nx, ny, nz;   // the plane's normal, outward, unit length
+    unsigned int body;  // only triangles of this body count
+} Probe;
+STOKES_ASSERT_SIZE(Probe, 32);
 
 // One triangle of the scene, in the order of the scene's shapes. Written by the host once per scene.
 typedef struct Triangle {

@@ -1,0 +1,48 @@
+// Stage 4 of a pass, at diffuse surfaces: photons are stored with the flux they bring, and reflected.
+#include "lib/normal.clh"
+#include "lib/retrace.clh"
+#include "shared/photon.h"
+
+// Work-items: round.count, one an entry of list.
+// Reads: list, points [paths], spectra: row i is the reflectance of material i.
+// Writes: the surface map's slot round.first_slot + i (incident flux [W/nm]), rays, flux, ledgers.
+// The path goes on with probability mean(reflectance flux) / mean(flux) and its flux raised accordingly.
+__kernel void scatter_diffuse(EventRound round, __global const PassConstants* pass, __global const uint* list,
+                              __global const SurfacePoint* points, __global const float16* spectra,
+                              __global Ray* rays, __global float16* flux, __global PathLedger* ledgers,
+                              __global PhotonHead* heads, __global float16* map_flux) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= round.count) return;
+    const uint path = list[i];
+    const SurfacePoint point = points[path];
+    const float3 normal = (float3)(point.nx, point.ny, point.nz);
+    const float16 incident = flux[path];
+    __global PathLedger* ledger = &ledgers[path];
+
+    const float incident_sum = sum16(incident);
+    const uint slot = round.first_slot + i;
+    if (slot < round.slot_limit) {
+        heads[slot] = (PhotonHead){point.x, point.y, point.z, pack_normal(normal)};
+        map_flux[slot] = incident;
+        ledger->stored += incident_sum;
+    } else {
+        ledger->full_deposits += 1u;
+    }
+
+    const float16 reflected = incident * spectra[point.material];
+    const float reflected_sum = sum16(reflected);
+    const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_SCATTER);
+    const float survival = min(reflected_sum / incident_sum, 1.0f);
+    ledger->absorbed += incident_sum - reflected_sum;
+    if (!(draw.a < survival)) {
+        ledger->roulette += reflected_sum;
+        ledger->fate = STOKES_FATE_ABSORBED;
+        return;
+    }
+    const float16 carried = reflected / survival;
+    const float carried_sum = sum16(carried);
+    ledger->roulette += reflected_sum - carried_sum;
+    flux[path] = carried;
+    go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(point.x, point.y, point.z), normal, carried_sum,
+          draw.b, draw.c);
+}
