@@ -1,0 +1,46 @@
+// From spectra to the colours of a screen.
+//
+// Film values are XYZ with Y the luminance in cd/m^2: 683.002 lm/W times the integral over wavelength of
+// radiance [W m^-2 sr^-1 nm^-1] times the colour matching functions. Linear Rec. 709 is scaled so that
+// (1, 1, 1) is a white of 1 cd/m^2.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+
+#include "host/core/spectrum.hpp"
+
+namespace stokes {
+
+// K_m of the standard observer [lm/W]: 683 lm/W at 540 THz, carried to the peak of V(lambda) (CIE 018).
+inline constexpr double luminous_efficacy = 683.002;
+
+struct ColourMatching {
+    Spectrum x, y, z;  // dimensionless, 360..830 nm, zero outside
+};
+
+// The CIE 1931 2-degree standard observer, read once from the embedded tables.
+const ColourMatching& cie1931();
+
+// A column of an embedded CIE table, for example ("illuminants_1nm.csv", "D65"); zero outside its
+// wavelengths. Throws InputError where there is no such file or column, or a line is not numbers.
+Spectrum cie_spectrum(const std::string& file, const std::string& column);
+
+// XYZ of a spectrum on the renderer's 1 nm grid, 300..830 nm; Y in cd/m^2 for spectral radiance in W m^-2
+// sr^-1 nm^-1.
+glm::dvec3 xyz_of(const Spectrum& radiance);
+
+// Linear Rec. 709 of XYZ and back, from the primaries and the D65 white of ITU-R BT.709-6, item 1.3 and 1.4.
+// Colours outside the gamut have negative components.
+glm::dvec3 rec709_of_xyz(const glm::dvec3& xyz);
+glm::dvec3 xyz_of_rec709(const glm::dvec3& rgb);
+const glm::dmat3& rec709_from_xyz();  // the matrix itself, columns first as GLM has them
+
+// Luminance of linear Rec. 709, in the unit of its white.
+double luminance(const glm::dvec3& rgb);
+
+// The sRGB transfer function of IEC 61966-2-1, linear [0, 1] to encoded [0, 1] and back.
+double srgb_encode(double linear);
+double srgb_decode(double encoded);
+
+}  // namespace stokes
