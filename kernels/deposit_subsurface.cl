@@ -14,10 +14,10 @@ inline float refraction_angle_deg(float cos_in, float eta) {
 
 // The power table of a component, at the pass's wavelengths; one where light leaves where it came in.
 inline float16 power_kept(__global const MaterialRecord* material, uint component,
-                          __global const TableShape* table_shapes, __global const float16* spectra, float r_mm,
+                          __global const TableShape* table_shapes, __global const float16* table16, float r_mm,
                           float row) {
     if (material->medium == STOKES_NONE) return (float16)(1.0f);
-    return power_table_at(spectra, table_shapes[material->medium * 3u + component], r_mm, row);
+    return power_table_at(table16, table_shapes[material->medium * 3u + component], r_mm, row);
 }
 
 // Emitted flux of eq. 1-2: the re-radiation matrix times the flux. rows: one row an excitation wavelength; each
@@ -93,12 +93,13 @@ __kernel void place_exits(uint count, __global const Probe* probes, __global con
 }
 
 // Work-items: round.count exits of round.component, from round.first_exit on.
-// Reads: materials, table_shapes, spectra, flux of the arriving photons [W/nm].
+// Reads: materials, spectra (re-radiation), table_shapes and table16: the power tables at the pass's wavelengths, flux
+//   of the arriving photons [W/nm].
 // Writes: the map's slot round.first_slot + i: flux that leaves there (eq. 3, 4 or 5), ExitPoint.kept and
 //   .converted, ledgers (stored, dropped deposits).
 __kernel void deposit_exits(EventRound round, __global const MaterialRecord* materials,
-                            __global const TableShape* table_shapes, __global const float16* spectra,
-                            __global ExitPoint* exits, __global const float16* flux,
+                            __global const float16* spectra, __global const TableShape* table_shapes,
+                            __global const float16* table16, __global ExitPoint* exits, __global const float16* flux,
                             __global PathLedger* ledgers, __global PhotonHead* heads, __global float16* map_flux) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
@@ -112,7 +113,7 @@ __kernel void deposit_exits(EventRound round, __global const MaterialRecord* mat
         leaving = reradiate(&spectra[material->reradiation_row], leaving);
         exit_point->converted = sum16(leaving);
     }
-    leaving *= power_kept(material, round.component, table_shapes, spectra, fabs(exit_point->r_mm), exit_point->row);
+    leaving *= power_kept(material, round.component, table_shapes, table16, fabs(exit_point->r_mm), exit_point->row);
     const float kept = sum16(leaving);
     exit_point->kept = kept;
 
@@ -125,9 +126,7 @@ __kernel void deposit_exits(EventRound round, __global const MaterialRecord* mat
     }
     if (!found)
         ledger->missed_exits += 1u;
-    else if (slot >= round.slot_limit)
-        ledger->full_deposits += 1u;
-    else
+    else if (slot < round.slot_limit)
         ledger->stored += kept;
 }
 
@@ -155,14 +154,14 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     const bool found = exit_point.r_mm >= 0.0f;
     if (!found || slot >= round.slot_limit) {
         ledger->dropped += exit_point.kept;
-        ledger->fate = found ? STOKES_FATE_MAP_FULL : STOKES_FATE_MISSED_EXIT;
+        end_path(&rays[path], ledger, found ? STOKES_FATE_MAP_FULL : STOKES_FATE_MISSED_EXIT);
         return;
     }
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_RETRACE);
     const float survival = min(exit_point.kept / (16.0f * ROULETTE_SHARE * ledger->reference_flux), 1.0f);
     if (!(draw.a < survival)) {
         ledger->roulette += exit_point.kept;
-        ledger->fate = STOKES_FATE_ABSORBED;
+        end_path(&rays[path], ledger, STOKES_FATE_ABSORBED);
         return;
     }
     const float16 carried = map_flux[slot] / survival;
@@ -202,7 +201,7 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
     const ExitPoint chosen = at < single.kept ? single : multiple;
     if (ended || chosen.r_mm < 0.0f) {
         ledger->roulette += kept - missed;
-        ledger->fate = ended ? STOKES_FATE_ABSORBED : STOKES_FATE_MISSED_EXIT;
+        end_path(&rays[path], ledger, ended ? STOKES_FATE_ABSORBED : STOKES_FATE_MISSED_EXIT);
         return;
     }
     const float16 carried = incident * max(kept / incident_sum, 1.0f);

@@ -5,7 +5,8 @@
 
 // Work-items: round.count, one an entry of list.
 // Reads: list, points [paths], spectra: row i is the reflectance of material i.
-// Writes: the surface map's slot round.first_slot + i (incident flux [W/nm]), rays, flux, ledgers.
+// Writes: the surface map's slot round.first_slot + i (incident flux [W/nm]; nothing
+//   from round.slot_limit on), rays, flux, ledgers.
 // The path goes on with probability mean(reflectance flux) / mean(flux) and its flux raised accordingly.
 __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pass, __global const uint* list,
                               __global const SurfacePoint* points, __global const float16* spectra,
@@ -25,8 +26,6 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
         heads[slot] = (PhotonHead){point.x, point.y, point.z, pack_normal(normal)};
         map_flux[slot] = incident;
         ledger->stored += incident_sum;
-    } else {
-        ledger->full_deposits += 1u;
     }
 
     const float16 reflected = incident * spectra[point.material];
@@ -36,7 +35,7 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
     ledger->absorbed += incident_sum - reflected_sum;
     if (!(draw.a < survival)) {
         ledger->roulette += reflected_sum;
-        ledger->fate = STOKES_FATE_ABSORBED;
+        end_path(&rays[path], ledger, STOKES_FATE_ABSORBED);
         return;
     }
     const float16 carried = reflected / survival;

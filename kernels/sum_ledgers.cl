@@ -13,7 +13,7 @@ __kernel void sum_ledgers(uint count, uint chunk_size, __global const PathLedger
     for (uint k = 0u; k < 8u; ++k) total.flux[k] = 0.0f;
     for (uint k = 0u; k < STOKES_FATE_COUNT; ++k) total.fates[k] = 0u;
     total.missed_exits = 0u;
-    total.full_deposits = 0u;
+    total.rays = 0u;
     total.pad[0] = total.pad[1] = total.pad[2] = 0u;
     for (uint i = first; i < last; ++i) {
         const PathLedger ledger = ledgers[i];
@@ -27,7 +27,7 @@ __kernel void sum_ledgers(uint count, uint chunk_size, __global const PathLedger
         total.flux[7] += ledger.stored;
         total.fates[min(ledger.fate, STOKES_FATE_COUNT - 1u)] += 1u;
         total.missed_exits += ledger.missed_exits;
-        total.full_deposits += ledger.full_deposits;
+        total.rays += ledger.rays;
     }
     sums[chunk] = total;
 }

@@ -71,4 +71,11 @@ void Allocation::read(void* data, std::size_t bytes, std::size_t offset) const {
         throw RunError("reading " + owner_->name + " failed, OpenCL error " + std::to_string(error));
 }
 
+void Allocation::copy_to(const Allocation& target, std::size_t bytes) const {
+    const cl_int error = ::clEnqueueCopyBuffer(owner_->device.queue()(), owner_->buffer(), target.owner_->buffer(),
+                                               0, 0, bytes, 0, nullptr, nullptr);
+    if (error != CL_SUCCESS)
+        throw RunError("copying " + owner_->name + " failed, OpenCL error " + std::to_string(error));
+}
+
 }  // namespace stokes

@@ -97,6 +97,7 @@ class Allocation {
     const Device& device() const { return owner_->device; }
     void write(const void* data, std::size_t bytes, std::size_t offset) const;
     void read(void* data, std::size_t bytes, std::size_t offset) const;
+    void copy_to(const Allocation& target, std::size_t bytes) const;
 
   private:
     struct Owner {
@@ -132,6 +133,12 @@ class Buffer {
         if (count > 0) allocation_.write(data, count * sizeof(T), offset * sizeof(T));
     }
     void upload(const std::vector<T>& data) const { upload(data.data(), data.size()); }
+    // The first count elements, on the device; asynchronous.
+    void copy_to(const Buffer<T>& target, std::size_t count) const {
+        check(count, 0);
+        target.check(count, 0);
+        if (count > 0) allocation_.copy_to(target.allocation_, count * sizeof(T));
+    }
     std::vector<T> download() const { return download(size_); }
     std::vector<T> download(std::size_t count, std::size_t offset = 0) const {
         check(count, offset);

@@ -33,7 +33,7 @@ typedef struct PathLedger {
     float stored;       // put into the maps
     unsigned int fate;           // STOKES_FATE_*
     unsigned int missed_exits;   // deposits dropped because the exit point found no surface
-    unsigned int full_deposits;  // deposits dropped because the map was full
+    unsigned int rays;           // rays traced for it so far, probes not counted
     float reference_flux;        // mean flux at emission [W/nm], the measure for roulette
 } PathLedger;
 STOKES_ASSERT_SIZE(PathLedger, 48);
@@ -43,7 +43,7 @@ typedef struct LedgerSums {
     float flux[8];          // emitted, absorbed, stokes_loss, escaped, dropped, roulette, created, stored [W/nm]
     unsigned int fates[7];  // paths by STOKES_FATE_*
     unsigned int missed_exits;
-    unsigned int full_deposits;
+    unsigned int rays;
     unsigned int pad[3];
 } LedgerSums;
 STOKES_ASSERT_SIZE(LedgerSums, 80);

@@ -1,0 +1,194 @@
+#include <fmt/core.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+
+#include "host/commands/commands.hpp"
+#include "host/commands/progress.hpp"
+#include "host/core/error.hpp"
+#include "host/core/log.hpp"
+#include "host/image/develop.hpp"
+#include "host/image/exr.hpp"
+#include "host/image/png.hpp"
+#include "host/render/renderer.hpp"
+#include "host/render/stats.hpp"
+#include "host/scene/scene_reader.hpp"
+
+namespace stokes {
+
+namespace {
+
+volatile std::sig_atomic_t caught_signal = 0;
+
+extern "C" void catch_signal(int signal) {
+    if (caught_signal != 0) std::_Exit(128 + signal);  // a second one does not wait
+    caught_signal = signal;
+}
+
+struct RenderOptions {
+    std::string scene_file, exr_file, png_file, stats_file, device, kernel_directory, size;
+    int passes = 0, threads = 0;
+    std::int64_t photons = 0;
+    std::uint32_t seed = 0;
+    double alpha = 0.0, radius_mm = 0.0, exposure_ev = 0.0, max_memory_gib = 0.0;
+    bool quiet = false;
+};
+
+// What was given on the command line takes the place of what the scene says.
+void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) {
+    RenderSettings& render = scene.render;
+    if (command.count("--passes")) render.passes = options.passes;
+    if (command.count("--photons")) render.photons_per_pass = options.photons;
+    if (command.count("--seed")) render.seed = options.seed;
+    if (command.count("--alpha")) render.alpha = options.alpha;
+    if (command.count("--radius")) render.radius_mm = options.radius_mm;
+    if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
+    if (command.count("--size")) {
+        char rest = 0;
+        int width = 0, height = 0;
+        if (std::sscanf(options.size.c_str(), "%5dx%5d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
+            width > 16384 || height > 16384)
+            throw InputError("--size: expected WIDTHxHEIGHT in pixels, each 1 to 16384, got \"" + options.size + "\"");
+        scene.film.width = width;
+        scene.film.height = height;
+    }
+}
+
+// An output that cannot be written is found out before the render, not after it.
+void check_outputs(const RenderOptions& options) {
+    for (const std::string& file : {options.exr_file, options.png_file, options.stats_file}) {
+        if (file.empty()) continue;
+        const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+        if (!std::filesystem::is_directory(folder))
+            throw InputError(file + ": expected an existing folder, " + folder.string() + " is none");
+        if (std::filesystem::is_directory(file)) throw InputError(file + ": expected a file to write, this is a folder");
+    }
+}
+
+Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double exposure_ev) {
+    return {{"stokes.version", std::string(STOKES_VERSION)},
+            {"stokes.scene", stats.scene},
+            {"stokes.device", stats.device},
+            {"stokes.passes", static_cast<int>(stats.passes)},
+            {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
+            {"stokes.seed", static_cast<double>(stats.seed)},
+            {"stokes.alpha", stats.alpha},
+            {"stokes.radiusFirst_mm", stats.radius_first_mm},
+            {"stokes.radiusLast_mm", stats.radius_last_mm},
+            {"stokes.lambdaMin_nm", scene.render.lambda_min_nm},
+            {"stokes.lambdaMax_nm", scene.render.lambda_max_nm},
+            {"stokes.exposure_ev", exposure_ev},
+            {"stokes.wall_s", stats.wall_s}};
+}
+
+RenderStats collect_stats(const Scene& scene, const Device& device, const Renderer& renderer) {
+    RenderStats stats;
+    stats.scene = scene.file;
+    stats.device = device.description().name;
+    stats.driver = device.description().platform + " " + device.description().driver;
+    stats.passes = renderer.passes();
+    stats.seed = scene.render.seed;
+    stats.width = scene.film.width;
+    stats.height = scene.film.height;
+    stats.photons_emitted = renderer.book().photons();
+    stats.rays_traced = renderer.book().rays() + renderer.camera_rays();
+    stats.deposits = renderer.book().deposits();
+    stats.dropped = renderer.book().dropped();
+    stats.ledger = renderer.book().ledger();
+    stats.alpha = scene.render.alpha;
+    stats.radius_first_mm = renderer.first_radius();
+    stats.radius_last_mm = renderer.radius_of(renderer.passes() - 1);
+    stats.device_memory_bytes = device.memory_in_use();
+    for (const auto& [kernel, time] : device.stage_times()) stats.stages[kernel] = time.seconds;
+    return stats;
+}
+
+void say_what_was_dropped(const RenderStats& stats) {
+    std::string causes;
+    for (const auto& [cause, count] : stats.dropped)
+        if (count > 0) causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", count, cause);
+    if (!causes.empty())
+        fmt::print(stderr, "dropped: {} of {} deposits and {} photons\n", causes, stats.deposits, stats.photons_emitted);
+}
+
+void write_pictures(const RenderOptions& options, const Scene& scene, const FilmImage& film, const RenderStats& stats) {
+    if (const std::size_t bad = count_non_finite(film))
+        warn(fmt::format("{} pixels are not finite and are shown black", bad));
+    const double exposure = scene.film.exposure_ev ? *scene.film.exposure_ev : automatic_exposure_ev(film);
+    if (!options.exr_file.empty()) write_exr(options.exr_file, film, exr_metadata(scene, stats, exposure));
+    if (!options.png_file.empty())
+        write_png(options.png_file, develop(film, exposure), {{"Software", "stokes " STOKES_VERSION}});
+    if (!options.stats_file.empty()) write_stats(stats, options.stats_file);
+    if (!options.quiet)
+        for (const std::string& file : {options.exr_file, options.png_file, options.stats_file})
+            if (!file.empty()) fmt::print("{}\n", file);
+}
+
+void render(const CLI::App& command, const RenderOptions& options) {
+    const auto start = std::chrono::steady_clock::now();
+    if (options.exr_file.empty() && options.png_file.empty() && options.stats_file.empty())
+        throw InputError("render: expected an output, -o OUT.exr, --png OUT.png or --stats FILE.json");
+    check_outputs(options);
+    Scene scene = read_scene(options.scene_file);
+    apply(command, options, scene);
+    Device device = Device::open(options.device, options.threads);
+    device.set_kernel_directory(options.kernel_directory);
+    if (options.max_memory_gib > 0.0)
+        device.set_memory_budget(static_cast<std::uint64_t>(options.max_memory_gib * (1 << 30)));
+    std::signal(SIGINT, catch_signal);
+    std::signal(SIGTERM, catch_signal);
+    Renderer renderer(device, scene);
+    device.finish();
+
+    const double set_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    Progress progress(static_cast<std::uint32_t>(scene.render.passes), options.quiet);
+    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(scene.render.passes) && caught_signal == 0; ++pass) {
+        renderer.render_pass(pass);
+        device.finish();
+        progress.update(pass + 1, renderer.book().photons());
+    }
+    progress.finish();
+    const double wall_s = progress.elapsed_s();
+    if (renderer.passes() == 0) return;
+    const FilmImage film = renderer.image();
+    RenderStats stats = collect_stats(scene, device, renderer);
+    stats.wall_s = wall_s;
+    stats.set_up_s = set_up_s;
+    if (!options.quiet) say_what_was_dropped(stats);
+    write_pictures(options, scene, film, stats);
+}
+
+}  // namespace
+
+int interrupted_signal() { return caught_signal; }
+
+void add_render_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("render", "Render a scene");
+    const auto options = std::make_shared<RenderOptions>();
+    command->add_option("scene", options->scene_file, "Scene file")->required()->type_name("SCENE.json");
+    command->add_option("-o,--output", options->exr_file, "OpenEXR picture, one layer a component")->type_name("OUT.exr");
+    command->add_option("--png", options->png_file, "Picture for the screen")->type_name("OUT.png");
+    command->add_option("--stats", options->stats_file, "Figures of the render")->type_name("FILE.json");
+    command->add_option("--passes", options->passes, "Passes")->check(CLI::Range(1, 100000000));
+    command->add_option("--photons", options->photons, "Photons per pass")->check(CLI::Range(1, 0x10000000));
+    command->add_option("--size", options->size, "Picture size in pixels")->type_name("WxH");
+    command->add_option("--seed", options->seed, "Seed of the random numbers");
+    command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
+        ->check(CLI::Range(1e-6, 1.0));
+    command->add_option("--radius", options->radius_mm, "First radius of the density estimate [mm]")
+        ->check(CLI::Range(1e-6, 1e9));
+    command->add_option("--exposure", options->exposure_ev, "Exposure of the PNG; default: automatic")->type_name("EV");
+    command->add_option("--device", options->device, "platform:device, part of a name, cpu or gpu");
+    command->add_option("--threads", options->threads, "CPU threads; default: all")->check(CLI::Range(1, 4096));
+    command->add_option("--max-memory", options->max_memory_gib, "Device memory to use at most; default: 3/4 of it")
+        ->type_name("GiB")
+        ->check(CLI::Range(1e-3, 1e6));
+    command->add_option("--kernel-dir", options->kernel_directory, "Read the kernels from here, for development")
+        ->check(CLI::ExistingDirectory);
+    command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
+    command->callback([command, options] { render(*command, *options); });
+}
+
+}  // namespace stokes

@@ -1,0 +1,48 @@
+// Where the energy of a render went.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "host/render/photon_tracer.hpp"
+
+namespace stokes {
+
+// Means over the passes; powers [W], integrated over the render's wavelengths. Along the photons' paths
+// emitted + created = absorbed + stokes_loss + escaped + dropped + roulette.
+struct Ledger {
+    double emitted = 0.0;
+    double absorbed = 0.0;     // by surfaces, media and black
+    double stokes_loss = 0.0;  // taken up by fluorophores and not re-emitted
+    double escaped = 0.0;      // left the scene
+    double dropped = 0.0;      // cut off: missed exits, full maps, the limit of events
+    double roulette = 0.0;     // statistical balance of Russian roulette, mean zero
+    double created = 0.0;      // by power tables above one
+    double stored = 0.0;       // put into the maps; not part of the sum, light is stored at every event
+    std::uint64_t photons = 0, absorbed_photons = 0, escaped_photons = 0, dropped_photons = 0;
+
+    // (emitted + created - everything the light went to) / emitted: 0 but for rounding.
+    double imbalance() const;
+};
+
+// Sums over all passes of a render.
+class LedgerBook {
+  public:
+    // spectral_weight_nm: PassConstants::spectral_weight_nm of the pass.
+    void add(const PhotonAccount& account, double spectral_weight_nm);
+
+    Ledger ledger() const;
+    // Deposits and paths that were dropped, by cause: missed_exit, map_full, event_limit, not_finite.
+    std::map<std::string, std::uint64_t> dropped() const;
+    std::uint64_t photons() const;
+    std::uint64_t rays() const { return rays_; }
+    std::uint64_t deposits() const { return deposits_; }
+
+  private:
+    std::array<double, 8> energy_{};  // in the order of LedgerSums [W]
+    std::array<std::uint64_t, STOKES_FATE_COUNT> fates_{};
+    std::uint64_t passes_ = 0, rays_ = 0, missed_exits_ = 0, refused_slots_ = 0, deposits_ = 0;
+};
+
+}  // namespace stokes

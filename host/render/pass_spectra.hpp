@@ -1,0 +1,45 @@
+// What a pass's sixteen wavelengths make of the scene's spectra.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/device/device.hpp"
+#include "host/render/wavelengths.hpp"
+#include "host/scene/scene.hpp"
+#include "kernels/shared/pass.h"
+
+namespace stokes {
+
+// Where rows of the pass's spectra stand: a row is one Flux16.
+// [0, materials): reflectance; then one excitation row and 16 re-radiation rows a fluorophore.
+struct SpectraLayout {
+    explicit SpectraLayout(const Scene& scene);
+    std::uint32_t excitation_row(int fluorophore) const { return materials + static_cast<std::uint32_t>(fluorophore) * 17; }
+    std::uint32_t reradiation_row(int fluorophore) const { return excitation_row(fluorophore) + 1; }
+    std::uint32_t row_count() const { return materials + fluorophores * 17; }
+    std::uint32_t materials, fluorophores;
+};
+
+struct PassSpectra {
+    PassConstants constants;           // all but offset_mm
+    std::vector<Flux16> rows;          // SpectraLayout::row_count() rows
+    std::vector<Flux16> photon_flux;   // per light: flux of one photon [W/nm], all lights' probabilities included
+    std::vector<Flux16> radiance;      // per light: radiance of its surface [W mm^-2 sr^-1 nm^-1], 0 for beams
+};
+
+// Chance that a photon starts at each light: proportional to its power in the render's wavelength range.
+// InputError when no light has any power there.
+std::vector<double> light_probabilities(const Scene& scene);
+
+// surface_area_mm2: per light, of its emitting surface (beams: unused).
+PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
+                              const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons,
+                              double radius_mm);
+
+// Re-radiation matrix of eq. 1-2 at a wavelength set: [ex][em] = conversion E(ex) F(em) pair weight where em > ex
+// (Stokes), else 0. Flux at ex [W/nm] times it is flux at em [W/nm].
+std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, const WavelengthSet& set,
+                                                        double pair_weight);
+
+}  // namespace stokes

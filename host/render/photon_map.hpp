@@ -1,0 +1,40 @@
+// Slots for the photons of a pass.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "host/device/device.hpp"
+#include "kernels/shared/photon.h"
+
+namespace stokes {
+
+// One of the maps F, S, M and surface. Deposits of a round of events stand in consecutive slots, in the order of
+// their paths, so that a slot depends on paths alone.
+class PhotonMap {
+  public:
+    PhotonMap(const Device& device, const std::string& name, std::uint32_t capacity);
+
+    // Makes room for count more slots, by half as much again as is needed; keeps what is stored. Where the device's
+    // memory budget does not allow it, the capacity stays and kernels drop and count what does not fit.
+    void reserve(std::uint32_t count);
+
+    void clear() { used_ = 0; }
+    // Hands out count slots; returns how many of them lie beyond the capacity and are lost.
+    std::uint32_t advance(std::uint32_t count);
+
+    std::uint32_t used() const { return used_; }
+    std::uint32_t capacity() const { return capacity_; }
+    const Buffer<PhotonHead>& heads() const { return heads_; }
+    const Buffer<Flux16>& flux() const { return flux_; }
+
+  private:
+    Device device_;
+    std::string name_;
+    std::uint32_t capacity_ = 0, used_ = 0;
+    bool full_ = false;
+    Buffer<PhotonHead> heads_;
+    Buffer<Flux16> flux_;
+};
+
+}  // namespace stokes

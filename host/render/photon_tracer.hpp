@@ -1,0 +1,69 @@
+// The photon half of a pass: emission, events below and on surfaces, deposits into the maps.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "host/device/device.hpp"
+#include "host/render/device_scene.hpp"
+#include "host/render/photon_map.hpp"
+#include "kernels/shared/pass.h"
+#include "kernels/shared/path.h"
+
+namespace stokes {
+
+// The pass's spectra on the device; rows as SpectraLayout has them.
+struct PassBuffers {
+    Buffer<PassConstants> constants;  // [1]
+    Buffer<Flux16> rows;
+    Buffer<Flux16> photon_flux;  // [lights]
+    Buffer<Flux16> radiance;     // [lights]
+};
+
+using PhotonMaps = std::array<PhotonMap, STOKES_MAP_COUNT>;  // by STOKES_MAP_*
+
+// What became of a pass's photons. Flux: sums over the pass's wavelengths [W/nm], in the order of LedgerSums.
+struct PhotonAccount {
+    std::array<double, 8> flux{};
+    std::array<std::uint64_t, STOKES_FATE_COUNT> fates{};  // paths by STOKES_FATE_*
+    std::uint64_t rays = 0;           // photon rays and probes
+    std::uint64_t missed_exits = 0;   // deposits whose exit point found no surface
+    std::uint64_t refused_slots = 0;  // deposits a full map had no slot for
+    std::uint64_t deposits = 0;       // slots handed out in all maps
+    std::uint64_t rounds = 0;         // of events
+};
+
+class PhotonTracer {
+  public:
+    // Room for this many paths. Compiles the photon kernels.
+    PhotonTracer(const Device& device, std::uint32_t paths);
+
+    // Follows all photons of a pass to their ends; the maps must have been cleared, their deposits are left in them.
+    PhotonAccount trace(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons, PhotonMaps& maps);
+
+  private:
+    ListCounts make_lists(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t count, std::uint32_t event);
+    void scatter_at_surfaces(const PassBuffers& pass, EventRound round, PhotonMap& map);
+    void scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
+                                const ListCounts& lists, PhotonMaps& maps);
+    PhotonAccount close_account(std::uint32_t photons);
+
+    Device device_;
+    Kernel emit_, trace_, trace_probe_, classify_, count_, scan_, write_, scatter_;
+    Kernel sample_exits_, place_exits_, deposit_, retrace_fluorescence_, retrace_elastic_, sum_;
+    Buffer<Ray> rays_;
+    Buffer<Hit> hits_;
+    Buffer<Flux16> flux_;
+    Buffer<PathLedger> ledgers_;
+    Buffer<SurfacePoint> points_;
+    Buffer<std::uint32_t> alive_, next_alive_, diffuse_, fluorescence_, elastic_;
+    Buffer<std::uint8_t> kinds_;
+    Buffer<ListCounts> chunk_counts_, totals_;
+    Buffer<ExitPoint> exits_;
+    Buffer<Probe> probes_;
+    Buffer<Hit> probe_hits_;
+    Buffer<LedgerSums> sums_;
+    std::uint64_t probes_traced_ = 0, refused_slots_ = 0, deposits_ = 0;
+};
+
+}  // namespace stokes

@@ -1,0 +1,26 @@
+// The radius of the density estimate: where it starts and how it shrinks.
+#pragma once
+
+#include <cstdint>
+
+#include "host/scene/scene.hpp"
+
+namespace stokes {
+
+// Radius [mm] of the pass with this index (from 0): radius[i+1]^2 = radius[i]^2 (i + alpha) / (i + 1), i from 1.
+// Knaus and Zwicker, "Progressive photon mapping: a probabilistic approach", ACM TOG 30(3), 2011, eq. 20.
+// In closed form, so that passes do not depend on each other. alpha in (0, 1].
+double pass_radius_mm(double first_mm, double alpha, std::uint32_t pass);
+
+// First radius [mm]: the disk that catches photons_per_disk photons when all of a pass's photons are spread evenly over
+// the scene's surface (or over its bounding sphere, where that is smaller). RunError for a scene without surfaces.
+double first_radius_mm(const Scene& scene, std::int64_t photons);
+
+// Half the diagonal of the scene's bounding box, and its centre [mm].
+struct SceneExtent {
+    glm::dvec3 minimum{0.0}, maximum{0.0};
+    double half_diagonal_mm() const { return 0.5 * glm::length(maximum - minimum); }
+};
+SceneExtent scene_extent(const Scene& scene);
+
+}  // namespace stokes

@@ -1,0 +1,122 @@
+#include "host/render/renderer.hpp"
+
+#include <algorithm>
+
+#include "host/core/error.hpp"
+#include "host/render/pass_spectra.hpp"
+#include "host/render/radius.hpp"
+
+namespace stokes {
+
+namespace {
+
+// Slots a map starts with; it grows with the first passes where that is too few.
+std::uint32_t first_capacity(std::uint32_t photons) { return photons + 1024; }
+
+std::uint32_t checked_photons(const Scene& scene) {
+    const std::int64_t photons = scene.render.photons_per_pass;
+    if (photons < 1 || photons > 0x10000000)
+        throw InputError("photons per pass: expected 1 to 268435456, got " + std::to_string(photons));
+    return static_cast<std::uint32_t>(photons);
+}
+
+PassBuffers make_pass_buffers(const Device& device, const Scene& scene) {
+    PassBuffers pass;
+    pass.constants = Buffer<PassConstants>(device, "pass constants", 1);
+    pass.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count());
+    pass.photon_flux = Buffer<Flux16>(device, "photon flux of the lights", scene.lights.size());
+    pass.radiance = Buffer<Flux16>(device, "radiance of the lights", scene.lights.size());
+    return pass;
+}
+
+}  // namespace
+
+Renderer::Renderer(const Device& device, const Scene& scene)
+    : device_(device),
+      scene_(scene),
+      on_device_(device, scene),
+      photons_(checked_photons(scene)),
+      first_radius_mm_(scene.render.radius_mm.value_or(first_radius_mm(scene, photons_))),
+      pass_(make_pass_buffers(device, scene)),
+      tracer_(device, photons_),
+      maps_{PhotonMap(device, "fluorescence", first_capacity(photons_)),
+            PhotonMap(device, "single scattering", first_capacity(photons_)),
+            PhotonMap(device, "multiple scattering", first_capacity(photons_)),
+            PhotonMap(device, "surface", first_capacity(photons_))},
+      hash_builder_(device, first_capacity(photons_)),
+      hash_(device, "photon map", first_capacity(photons_)),
+      view_(device, make_camera_record(scene.camera, scene.film.width, scene.film.height)),
+      gather_(device, view_.camera()),
+      resample_(Program(device, "resample_tables.cl").kernel("resample_table")),
+      trace_(Program(device, "trace_rays.cl").kernel("trace_closest_all")),
+      wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS),
+      camera_rays_(device, "camera rays", view_.ray_count()),
+      camera_hits_(device, "camera hits", view_.ray_count()),
+      film_(device, "film",
+            std::vector<FilmValue>(std::size_t{STOKES_MAP_COUNT} * view_.ray_count(), FilmValue{0, 0, 0, 0})) {}
+
+double Renderer::radius_of(std::uint32_t pass) const {
+    return pass_radius_mm(first_radius_mm_, scene_.render.alpha, pass);
+}
+
+void Renderer::render_pass(std::uint32_t pass) {
+    const double radius_mm = prepare_pass(pass);
+    for (PhotonMap& map : maps_) map.clear();
+    const PhotonAccount account = tracer_.trace(on_device_, pass_, photons_, maps_);
+    view_.make_rays(pass_.constants, camera_rays_);
+    trace_.launch(view_.ray_count(), view_.ray_count(), on_device_.nodes, on_device_.blocks, on_device_.grid,
+                  camera_rays_, camera_hits_);
+    see_maps(radius_mm);
+    book_.add(account, image_weight_nm(scene_.render.lambda_min_nm, scene_.render.lambda_max_nm));
+    ++passes_;
+}
+
+// Draws the wavelengths and brings every spectrum and table onto them. Returns the pass's radius [mm].
+double Renderer::prepare_pass(std::uint32_t pass) {
+    const double radius_mm = radius_of(pass);
+    PassSpectra spectra = make_pass_spectra(scene_, on_device_.light_probability,
+                                            on_device_.light_surface_area_mm2, pass, photons_, radius_mm);
+    spectra.constants.offset_mm = on_device_.offset_mm;
+    pass_.constants.upload(&spectra.constants, 1);
+    pass_.rows.upload(spectra.rows);
+    pass_.photon_flux.upload(spectra.photon_flux);
+    pass_.radiance.upload(spectra.radiance);
+    wavelengths_.upload(spectra.constants.lambda_nm, STOKES_WAVELENGTHS);
+    const DeviceTables& tables = on_device_.tables;
+    const EvenAxis& lambda = tables.wavelengths;
+    resample_.launch(tables.entries, tables.values, static_cast<std::uint32_t>(lambda.count),
+                     static_cast<float>(lambda.first), static_cast<float>(lambda.step), wavelengths_,
+                     tables.at_wavelengths, tables.entries);
+    return radius_mm;
+}
+
+// Adds what the camera sees to the film, map by map.
+void Renderer::see_maps(double radius_mm) {
+    const GatherScene seen{on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.rows, pass_.radiance};
+    gather_.collect_points(seen, pass_.constants, camera_rays_, camera_hits_, film_);
+    for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
+        const PhotonMap& map = maps_[m];
+        if (map.used() == 0) continue;
+        hash_builder_.reserve(map.capacity());
+        hash_.reserve(map.capacity());
+        hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
+                            static_cast<float>(radius_mm));
+        gather_.add_map(m, hash_, seen, pass_.constants, film_);
+    }
+}
+
+FilmImage Renderer::image() const {
+    FilmImage image(scene_.film.width, scene_.film.height);
+    const std::vector<FilmValue> sums = film_.download();
+    const float share = passes_ > 0 ? 1.0f / static_cast<float>(passes_) : 0.0f;
+    for (std::size_t c = 0; c < component_count; ++c)
+        for (std::size_t i = 0; i < image.pixels(); ++i) {
+            const FilmValue& sum = sums[c * image.pixels() + i];
+            image.xyz[c][i * 3] = sum.x * share;
+            image.xyz[c][i * 3 + 1] = sum.y * share;
+            image.xyz[c][i * 3 + 2] = sum.z * share;
+        }
+    return image;
+}
+
+}  // namespace stokes

@@ -1,0 +1,62 @@
+// Probabilistic progressive photon mapping of a scene: independent passes, and their mean.
+#pragma once
+
+#include <cstdint>
+
+#include "host/device/device.hpp"
+#include "host/image/film.hpp"
+#include "host/render/camera_view.hpp"
+#include "host/render/device_scene.hpp"
+#include "host/render/gather.hpp"
+#include "host/render/ledger.hpp"
+#include "host/render/photon_tracer.hpp"
+#include "host/render/spatial_hash.hpp"
+#include "host/scene/scene.hpp"
+
+namespace stokes {
+
+class Renderer {
+  public:
+    // Uploads the scene and compiles the kernels. InputError for scenes that cannot be rendered (no power, too large
+    // for the device's memory budget), RunError for device failures.
+    Renderer(const Device& device, const Scene& scene);
+
+    // Renders the pass with this index (from 0) and adds it to the film. Passes are independent of each other: a pass
+    // depends on the scene, its seed and its index alone.
+    void render_pass(std::uint32_t pass);
+
+    // Mean of the passes so far: XYZ per component, Y in cd/m^2. Waits for the device.
+    FilmImage image() const;
+
+    std::uint32_t passes() const { return passes_; }
+    const LedgerBook& book() const { return book_; }
+    std::uint64_t camera_rays() const { return std::uint64_t{passes_} * view_.ray_count(); }
+    double first_radius() const { return first_radius_mm_; }  // [mm]
+    double radius_of(std::uint32_t pass) const;                // [mm]
+
+  private:
+    double prepare_pass(std::uint32_t pass);
+    void see_maps(double radius_mm);
+
+    Device device_;
+    Scene scene_;
+    DeviceScene on_device_;
+    std::uint32_t photons_;
+    double first_radius_mm_;
+    PassBuffers pass_;
+    PhotonTracer tracer_;
+    PhotonMaps maps_;
+    HashBuilder hash_builder_;
+    SpatialHash hash_;  // of one map at a time
+    CameraView view_;
+    Gather gather_;
+    Kernel resample_, trace_;
+    Buffer<float> wavelengths_;
+    Buffer<Ray> camera_rays_;
+    Buffer<Hit> camera_hits_;
+    Buffer<FilmValue> film_;
+    std::uint32_t passes_ = 0;
+    LedgerBook book_;
+};
+
+}  // namespace stokes

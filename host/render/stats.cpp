@@ -1,0 +1,79 @@
+#include "host/render/stats.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "host/core/atomic_file.hpp"
+
+namespace stokes {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            result += std::string("\\") + c;
+        else if (static_cast<unsigned char>(c) < 0x20)
+            result += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            result += c;
+    }
+    return result + "\"";
+}
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+std::string number(std::uint64_t value) { return std::to_string(value); }
+
+template <class T>
+std::string object(const std::map<std::string, T>& entries) {
+    std::string result;
+    for (const auto& [name, value] : entries)
+        result += fmt::format("{}\n    {}: {}", result.empty() ? "" : ",", quoted(name), number(value));
+    return "{" + result + "\n  }";
+}
+
+}  // namespace
+
+void write_stats(const RenderStats& s, const std::string& path) {
+    const Ledger& l = s.ledger;
+    const std::map<std::string, double> energy = {
+        {"emitted", l.emitted},   {"absorbed", l.absorbed}, {"stokes_loss", l.stokes_loss}, {"stored", l.stored},
+        {"escaped", l.escaped},   {"dropped", l.dropped},   {"roulette", l.roulette},       {"created", l.created},
+        {"imbalance", l.imbalance()}};
+    const std::map<std::string, std::uint64_t> photons = {{"emitted", l.photons},
+                                                          {"absorbed", l.absorbed_photons},
+                                                          {"escaped", l.escaped_photons},
+                                                          {"dropped", l.dropped_photons}};
+    const auto rate = [&](std::uint64_t count) { return s.wall_s > 0.0 ? static_cast<double>(count) / s.wall_s : 0.0; };
+    std::string text = "{\n";
+    const auto add = [&](const char* key, const std::string& value) {
+        text += fmt::format("{}  {}: {}", text.size() > 2 ? ",\n" : "", quoted(key), value);
+    };
+    add("scene", quoted(s.scene));
+    add("device", quoted(s.device));
+    add("driver", quoted(s.driver));
+    add("passes", number(std::uint64_t{s.passes}));
+    add("seed", number(std::uint64_t{s.seed}));
+    add("width", std::to_string(s.width));
+    add("height", std::to_string(s.height));
+    add("wall_s", number(s.wall_s));
+    add("set_up_s", number(s.set_up_s));
+    add("photons_emitted", number(s.photons_emitted));
+    add("photons_per_second", number(rate(s.photons_emitted)));
+    add("rays_traced", number(s.rays_traced));
+    add("rays_per_second", number(rate(s.rays_traced)));
+    add("deposits", number(s.deposits));
+    add("alpha", number(s.alpha));
+    add("radius_first_mm", number(s.radius_first_mm));
+    add("radius_last_mm", number(s.radius_last_mm));
+    add("device_memory_bytes", number(s.device_memory_bytes));
+    add("stages", object(s.stages));
+    add("dropped", object(s.dropped));
+    add("ledger", object(energy));
+    add("ledger_photons", object(photons));
+    write_file_atomically(path, text + "\n}\n");
+}
+
+}  // namespace stokes

@@ -1,0 +1,45 @@
+#include "host/render/wavelengths.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "host/core/error.hpp"
+
+namespace stokes {
+
+namespace {
+
+// Uniform in [0, bound), without the bias of a plain remainder.
+std::uint64_t below(std::mt19937_64& generator, std::uint64_t bound) {
+    const std::uint64_t limit = generator.max() - generator.max() % bound;
+    std::uint64_t draw = generator();
+    while (draw >= limit) draw = generator();
+    return draw % bound;
+}
+
+}  // namespace
+
+WavelengthSet draw_wavelengths(std::uint32_t seed, std::uint32_t pass, int first_nm, int last_nm) {
+    if (last_nm - first_nm + 1 < STOKES_WAVELENGTHS)
+        throw InputError("wavelength range " + std::to_string(first_nm) + ".." + std::to_string(last_nm) +
+                         " nm: expected at least " + std::to_string(STOKES_WAVELENGTHS) + " integers");
+    std::seed_seq sequence{seed, pass, 0x5707e5u};
+    std::mt19937_64 generator(sequence);
+    std::vector<int> all(static_cast<std::size_t>(last_nm - first_nm + 1));
+    std::iota(all.begin(), all.end(), first_nm);
+    WavelengthSet set;
+    for (std::size_t i = 0; i < set.size(); ++i) {  // Fisher-Yates, as far as needed
+        std::swap(all[i], all[i + below(generator, all.size() - i)]);
+        set[i] = all[i];
+    }
+    std::sort(set.begin(), set.end());
+    return set;
+}
+
+double image_weight_nm(int first_nm, int last_nm) { return double(last_nm - first_nm + 1) / STOKES_WAVELENGTHS; }
+
+double pair_weight_nm(int first_nm, int last_nm) { return double(last_nm - first_nm) / (STOKES_WAVELENGTHS - 1); }
+
+}  // namespace stokes
