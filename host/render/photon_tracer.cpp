@@ -123,7 +123,7 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
                              points_, rays_, scene.materials, scene.tables.shapes, scene.tables.mean_rows,
                              scene.tables.cumulative_rows, exits_, probes_);
     }
-    trace_probe_.launch(exits, exits, scene.nodes, scene.blocks, scene.grid, probes_, probe_hits_);
+    trace_probe_.launch(exits, exits, scene.nodes, scene.blocks, scene.grid, scene.triangles, probes_, probe_hits_);
     place_exits_.launch(exits, exits, probes_, probe_hits_, scene.triangles, exits_);
     for (std::uint32_t c = 0; c < 3; ++c) {
         deposit_.launch(counts[c], rounds[c], scene.materials, pass.rows, scene.tables.shapes, scene.tables.at_wavelengths,

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "host/scene/scene.hpp"
+#include "kernels/shared/camera.h"
+#include "kernels/shared/gather.h"
+#include "kernels/shared/photon.h"
 
 namespace stokes {
 
@@ -12,9 +16,15 @@ namespace stokes {
 // In closed form, so that passes do not depend on each other. alpha in (0, 1].
 double pass_radius_mm(double first_mm, double alpha, std::uint32_t pass);
 
-// First radius [mm]: the disk that catches photons_per_disk photons when all of a pass's photons are spread evenly over
-// the scene's surface (or over its bounding sphere, where that is smaller). RunError for a scene without surfaces.
-double first_radius_mm(const Scene& scene, std::int64_t photons);
+// First radius [mm] from how thickly a trial pass's photons lie where the camera looks: the picture is cut into square
+// tiles, and the median over tiles of photons per surface area [1/mm^2] sets the disk that catches ten of them.
+// points: what the camera's rays see, one a pixel; photons: positions in the maps. 0 when the camera sees no photon.
+double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint>& points,
+                       const std::vector<PhotonHead>& photons);
+
+// The same when the camera sees no photon: all photons spread evenly over the scene's surface (or over its bounding
+// sphere, where that is smaller). RunError for a scene without surfaces.
+double spread_radius_mm(const Scene& scene, std::int64_t photons);
 
 // Half the diagonal of the scene's bounding box, and its centre [mm].
 struct SceneExtent {

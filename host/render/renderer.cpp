@@ -10,6 +10,9 @@ namespace stokes {
 
 namespace {
 
+// Index of the trial pass, which no render reaches.
+constexpr std::uint32_t trial_pass = 0xffffffffu;
+
 // Slots a map starts with; it grows with the first passes where that is too few.
 std::uint32_t first_capacity(std::uint32_t photons) { return photons + 1024; }
 
@@ -36,7 +39,6 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       scene_(scene),
       on_device_(device, scene),
       photons_(checked_photons(scene)),
-      first_radius_mm_(scene.render.radius_mm.value_or(first_radius_mm(scene, photons_))),
       pass_(make_pass_buffers(device, scene)),
       tracer_(device, photons_),
       maps_{PhotonMap(device, "fluorescence", first_capacity(photons_)),
@@ -53,27 +55,42 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       camera_rays_(device, "camera rays", view_.ray_count()),
       camera_hits_(device, "camera hits", view_.ray_count()),
       film_(device, "film",
-            std::vector<FilmValue>(std::size_t{STOKES_MAP_COUNT} * view_.ray_count(), FilmValue{0, 0, 0, 0})) {}
+            std::vector<FilmValue>(std::size_t{STOKES_MAP_COUNT} * view_.ray_count(), FilmValue{0, 0, 0, 0})) {
+    first_radius_mm_ = scene.render.radius_mm ? *scene.render.radius_mm : find_first_radius();
+}
+
+// By a trial pass that leaves nothing in the film.
+double Renderer::find_first_radius() {
+    prepare_pass(trial_pass, 1.0);
+    for (PhotonMap& map : maps_) map.clear();
+    tracer_.trace(on_device_, pass_, photons_, maps_);
+    see_points();
+    std::vector<PhotonHead> photons;
+    for (const PhotonMap& map : maps_)
+        for (const PhotonHead& head : map.heads().download(map.used())) photons.push_back(head);
+    const double radius_mm = first_radius_mm(view_.camera(), gather_.points().download(), photons);
+    film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
+    device_.reset_stage_times();
+    return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
+}
 
 double Renderer::radius_of(std::uint32_t pass) const {
     return pass_radius_mm(first_radius_mm_, scene_.render.alpha, pass);
 }
 
 void Renderer::render_pass(std::uint32_t pass) {
-    const double radius_mm = prepare_pass(pass);
+    const double radius_mm = radius_of(pass);
+    prepare_pass(pass, radius_mm);
     for (PhotonMap& map : maps_) map.clear();
     const PhotonAccount account = tracer_.trace(on_device_, pass_, photons_, maps_);
-    view_.make_rays(pass_.constants, camera_rays_);
-    trace_.launch(view_.ray_count(), view_.ray_count(), on_device_.nodes, on_device_.blocks, on_device_.grid,
-                  camera_rays_, camera_hits_);
+    see_points();
     see_maps(radius_mm);
     book_.add(account, image_weight_nm(scene_.render.lambda_min_nm, scene_.render.lambda_max_nm));
     ++passes_;
 }
 
-// Draws the wavelengths and brings every spectrum and table onto them. Returns the pass's radius [mm].
-double Renderer::prepare_pass(std::uint32_t pass) {
-    const double radius_mm = radius_of(pass);
+// Draws the wavelengths and brings every spectrum and table onto them.
+void Renderer::prepare_pass(std::uint32_t pass, double radius_mm) {
     PassSpectra spectra = make_pass_spectra(scene_, on_device_.light_probability,
                                             on_device_.light_surface_area_mm2, pass, photons_, radius_mm);
     spectra.constants.offset_mm = on_device_.offset_mm;
@@ -87,13 +104,22 @@ double Renderer::prepare_pass(std::uint32_t pass) {
     resample_.launch(tables.entries, tables.values, static_cast<std::uint32_t>(lambda.count),
                      static_cast<float>(lambda.first), static_cast<float>(lambda.step), wavelengths_,
                      tables.at_wavelengths, tables.entries);
-    return radius_mm;
 }
 
-// Adds what the camera sees to the film, map by map.
+// What the camera's rays meet; emitters among it are added to the film.
+void Renderer::see_points() {
+    view_.make_rays(pass_.constants, camera_rays_);
+    trace_.launch(view_.ray_count(), view_.ray_count(), on_device_.nodes, on_device_.blocks, on_device_.grid,
+                  camera_rays_, camera_hits_);
+    gather_.collect_points(seen_scene(), pass_.constants, camera_rays_, camera_hits_, film_);
+}
+
+GatherScene Renderer::seen_scene() const {
+    return {on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.rows, pass_.radiance};
+}
+
+// Adds the photons to the film, map by map.
 void Renderer::see_maps(double radius_mm) {
-    const GatherScene seen{on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.rows, pass_.radiance};
-    gather_.collect_points(seen, pass_.constants, camera_rays_, camera_hits_, film_);
     for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
         const PhotonMap& map = maps_[m];
         if (map.used() == 0) continue;
@@ -101,7 +127,7 @@ void Renderer::see_maps(double radius_mm) {
         hash_.reserve(map.capacity());
         hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
                             static_cast<float>(radius_mm));
-        gather_.add_map(m, hash_, seen, pass_.constants, film_);
+        gather_.add_map(m, hash_, seen_scene(), pass_.constants, film_);
     }
 }
 

@@ -35,14 +35,17 @@ class Renderer {
     double radius_of(std::uint32_t pass) const;                // [mm]
 
   private:
-    double prepare_pass(std::uint32_t pass);
+    double find_first_radius();
+    void prepare_pass(std::uint32_t pass, double radius_mm);
+    void see_points();
+    GatherScene seen_scene() const;
     void see_maps(double radius_mm);
 
     Device device_;
     Scene scene_;
     DeviceScene on_device_;
     std::uint32_t photons_;
-    double first_radius_mm_;
+    double first_radius_mm_ = 0.0;
     PassBuffers pass_;
     PhotonTracer tracer_;
     PhotonMaps maps_;

@@ -1,0 +1,26 @@
+#include "host/render/gather.hpp"
+
+namespace stokes {
+
+Gather::Gather(const Device& device, const CameraRecord& camera)
+    : camera_(camera),
+      points_(device, "points seen by the camera", std::size_t{camera.width} * camera.height) {
+    const Program program(device, "gather_radiance.cl");
+    collect_points_ = program.kernel("collect_points");
+    gather_radiance_ = program.kernel("gather_radiance");
+}
+
+void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass,
+                            const Buffer<Ray>& rays, const Buffer<Hit>& hits, const Buffer<FilmValue>& film) {
+    collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes,
+                           scene.materials, scene.emitted, points_, film);
+}
+
+void Gather::add_map(std::uint32_t map, const SpatialHash& photons, const GatherScene& scene,
+                     const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film) {
+    gather_radiance_.launch(pixels(), points_, pixels(), map, photons.grid(), photons.cell_starts(),
+                            photons.positions(), photons.normals(), photons.flux(), scene.spectra, pass,
+                            film);
+}
+
+}  // namespace stokes

@@ -1,0 +1,54 @@
+// Light that reaches the camera: emitters seen directly, and the density estimate over the photon maps.
+#pragma once
+
+#include "host/device/device.hpp"
+#include "host/render/spatial_hash.hpp"
+#include "kernels/shared/camera.h"
+#include "kernels/shared/gather.h"
+#include "kernels/shared/material.h"
+#include "kernels/shared/pass.h"
+#include "kernels/shared/photon.h"
+#include "kernels/shared/ray.h"
+
+namespace stokes {
+
+// One value of the film: X, Y, Z [cd/m^2], 0.
+struct alignas(16) FilmValue {
+    float x, y, z, unused;
+};
+
+// What the gather reads of the scene and of the pass.
+struct GatherScene {
+    Buffer<Triangle> triangles;
+    Buffer<ShapeRecord> shapes;
+    Buffer<MaterialRecord> materials;
+    Buffer<Flux16> spectra;  // row i: reflectance of material i at the pass's wavelengths
+    Buffer<Flux16> emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]
+};
+
+// Adds a pass to the film [STOKES_MAP_COUNT][height][width].
+class Gather {
+  public:
+    Gather(const Device& device, const CameraRecord& camera);
+
+    // Finds the points that the camera rays see, and adds emitters seen directly to the surface layer.
+    // rays, hits: one per pixel, as CameraView makes and trace_closest finds them. Asynchronous.
+    void collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
+                        const Buffer<Hit>& hits, const Buffer<FilmValue>& film);
+
+    // Adds the light of one map (STOKES_MAP_*) at those points to the film's layer of the same number.
+    // Asynchronous.
+    void add_map(std::uint32_t map, const SpatialHash& photons, const GatherScene& scene,
+                 const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film);
+
+    // What collect_points found, one a pixel, in the order of the rays.
+    const Buffer<GatherPoint>& points() const { return points_; }
+
+  private:
+    std::uint32_t pixels() const { return camera_.width * camera_.height; }
+    CameraRecord camera_;
+    Kernel collect_points_, gather_radiance_;
+    Buffer<GatherPoint> points_;
+};
+
+}  // namespace stokes
