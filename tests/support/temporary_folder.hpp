@@ -47,7 +47,9 @@ inline std::string file_content(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+// Removes what was there instead of truncating it, which some file systems follow with a flush to the disk.
 inline void put_file(const std::string& path, const std::string& content) {
+    std::filesystem::remove(path);
     std::ofstream(path, std::ios::binary) << content;
 }
 
