@@ -1,0 +1,71 @@
+#include <cstdlib>
+#include <cstring>
+
+#include "host/image/exr.hpp"
+#include "host/render/renderer.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/device_fixture.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/test_scenes.hpp"
+
+using namespace stokes;
+
+namespace {
+
+FilmImage rendered(const Scene& scene, std::size_t local_size, std::initializer_list<std::uint32_t> passes) {
+    Device device = Device::open("cpu");
+    device.set_local_size(local_size);
+    Renderer renderer(device, scene);
+    for (const std::uint32_t pass : passes) renderer.render_pass(pass);
+    return renderer.image();
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("a picture has the same bits for any work-group size", "[reproducible]") {
+    const Scene scene = small_scene();
+    const FilmImage first = rendered(scene, 64, {0, 1});
+    const FilmImage second = rendered(scene, 16, {0, 1});
+    double sum = 0.0;
+    for (std::size_t c = 0; c < component_count; ++c) {
+        CHECK(same_bits(first.xyz[c], second.xyz[c]));
+        for (const float v : first.xyz[c]) sum += static_cast<double>(v);
+    }
+    CHECK(sum > 0.0);
+}
+
+TEST_CASE("a pass does not depend on the passes before it", "[reproducible]") {
+    const Scene scene = small_scene();
+    const FilmImage alone = rendered(scene, 64, {5});
+    const FilmImage again = rendered(scene, 64, {5});
+    const FilmImage other = rendered(scene, 64, {6});
+    const FilmImage both = rendered(scene, 64, {6, 5});
+    for (std::size_t c = 0; c < component_count; ++c) {
+        CHECK(same_bits(alone.xyz[c], again.xyz[c]));
+        for (std::size_t i = 0; i < alone.xyz[c].size(); ++i)
+            CHECK(both.xyz[c][i] == Approx(0.5 * (alone.xyz[c][i] + other.xyz[c][i])).margin(1e-12));
+    }
+    CHECK_FALSE(same_bits(alone.xyz[0], other.xyz[0]));
+}
+
+TEST_CASE("a picture has the same bits for one thread and two", "[reproducible]") {
+    const TemporaryFolder folder;
+    std::vector<ExrImage> images;
+    for (const std::string threads : {"1", "2"}) {
+        const std::string file = folder.path() + "/" + threads + ".exr";
+        const std::string command = std::string(STOKES_BINARY) + " render " + STOKES_SOURCE_DIR +
+                                    "/scenes/sphere.json --passes 1 --photons 20000 --size 40x30 --quiet --threads " +
+                                    threads + " -o " + file;
+        REQUIRE(std::system(command.c_str()) == 0);
+        images.push_back(read_exr(file));
+    }
+    REQUIRE(images[0].layers.size() == 5);
+    for (const auto& [name, values] : images[0].layers) {
+        CAPTURE(name);
+        CHECK(same_bits(values, images[1].layers.at(name)));
+    }
+}

@@ -1,0 +1,129 @@
+#include "tests/support/test_scenes.hpp"
+
+#include <cmath>
+
+#include "host/scene/mesh.hpp"
+#include "host/scene/shapes.hpp"
+
+namespace stokes {
+
+namespace {
+
+Shape make_shape(Scene& scene, const std::string& name, int material, Mesh mesh) {
+    Shape shape;
+    shape.name = name;
+    shape.material = material;
+    shape.body = scene.body_count++;
+    shape.mesh = std::move(mesh);
+    return shape;
+}
+
+Material diffuse(double reflectance) {
+    Material material;
+    material.name = "diffuse";
+    material.kind = MaterialKind::diffuse;
+    material.reflectance = Spectrum::constant(reflectance);
+    return material;
+}
+
+Fluorophore dot_like() {
+    Fluorophore fluorophore;
+    fluorophore.name = "dot";
+    fluorophore.excitation = {{300.0, 400.0, 540.0}, {1.0, 0.6, 0.0}, Outside::zero};
+    fluorophore.emission = {{500.0, 545.0, 600.0}, {0.0, 1.0, 0.0}, Outside::zero};
+    return fluorophore;
+}
+
+Medium marble_green() {
+    Medium medium;
+    medium.name = "marble";
+    medium.sigma_s = {{300.0, 795.0}, {1.5, 1.1}, Outside::hold};
+    medium.sigma_a = Spectrum::constant(0.0041);
+    medium.eta = 1.5;
+    return medium;
+}
+
+Material translucent(double fraction) {
+    Material material;
+    material.name = "translucent";
+    material.kind = MaterialKind::translucent;
+    material.medium = 0;
+    material.fluorophore = 0;
+    material.fluorescent_fraction = fraction;
+    return material;
+}
+
+}  // namespace
+
+Scene furnace_scene(double reflectance) {
+    Scene scene;
+    scene.file = "furnace";
+    scene.materials = {diffuse(reflectance)};
+    Mesh mesh = make_sphere(100.0, 64);
+    for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+    scene.shapes = {make_shape(scene, "wall", 0, mesh)};
+    scene.shapes[0].light = 0;
+    Light light;
+    light.name = "wall";
+    light.shape = 0;
+    light.flux = Spectrum::constant(M_PI * mesh_area_mm2(mesh) * 1e-6);
+    scene.lights = {light};
+    scene.camera.position_mm = {20.0, -10.0, 5.0};
+    scene.camera.target_mm = {-30.0, 40.0, 10.0};
+    scene.film = {16, 16, {}};
+    scene.render.photons_per_pass = 100000;
+    return scene;
+}
+
+Scene slab_scene(double fluorescent_fraction, double angle_deg) {
+    Scene scene;
+    scene.file = "slab";
+    scene.media = {marble_green()};
+    scene.fluorophores = {dot_like()};
+    scene.materials = {translucent(fluorescent_fraction)};
+    scene.shapes = {make_shape(scene, "slab", 0, make_rectangle(2000.0, 2000.0))};
+    Light light;
+    light.name = "beam";
+    light.kind = LightKind::beam;
+    light.flux = {{300.0, 500.0, 780.0}, {3e-3, 1e-3, 2e-3}, Outside::zero};
+    const double angle = angle_deg * M_PI / 180.0;
+    light.direction = {std::sin(angle), -std::cos(angle), 0.0};
+    light.position_mm = -50.0 * light.direction;
+    light.half_u_mm = {0.0, 0.0, 1.0};
+    light.half_v_mm = glm::cross(light.direction, light.half_u_mm);
+    scene.lights = {light};
+    scene.camera.position_mm = {0.0, 100.0, 1.0};
+    scene.camera.target_mm = {0.0, 0.0, 0.0};
+    scene.film = {8, 8, {}};
+    scene.render.photons_per_pass = 65536;
+    return scene;
+}
+
+Scene small_scene() {
+    Scene scene;
+    scene.file = "small";
+    scene.media = {marble_green()};
+    scene.fluorophores = {dot_like()};
+    scene.materials = {diffuse(0.7), translucent(0.5), Material{}};
+    scene.shapes.push_back(make_shape(scene, "floor", 0, make_rectangle(120.0, 120.0)));
+    Mesh ball = make_sphere(15.0, 48);
+    for (glm::vec3& p : ball.positions_mm) p.y += 15.0f;
+    scene.shapes.push_back(make_shape(scene, "ball", 1, ball));
+    Mesh lamp = make_disk(20.0, 32);
+    for (glm::vec3& p : lamp.positions_mm) p = {p.x, 90.0f - p.y, -p.z};
+    scene.shapes.push_back(make_shape(scene, "lamp", 2, lamp));
+    scene.shapes.back().light = 0;
+    Light light;
+    light.name = "lamp";
+    light.shape = 2;
+    light.flux = {{300.0, 360.0, 420.0, 780.0}, {0.0, 1e-2, 1e-3, 1e-3}, Outside::zero};
+    scene.lights = {light};
+    scene.camera.position_mm = {0.0, 60.0, 110.0};
+    scene.camera.target_mm = {0.0, 12.0, 0.0};
+    scene.film = {32, 24, {}};
+    scene.render.photons_per_pass = 8192;
+    scene.render.passes = 2;
+    return scene;
+}
+
+}  // namespace stokes
