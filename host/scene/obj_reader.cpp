@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "host/core/error.hpp"
+#include "host/scene/mesh_reader.hpp"
+#include "host/scene/text_input.hpp"
+
+namespace stokes {
+namespace {
+
+class ObjParser {
+  public:
+    ObjParser(std::string_view text, const std::string& file) : scanner_(text), file_(file) {}
+
+    Mesh parse() {
+        while (!scanner_.at_end()) {
+            const std::string_view keyword = scanner_.token();
+            if (keyword == "v") read_vertex();
+            if (keyword == "f") read_face();
+            scanner_.take_line();
+        }
+        if (largest_index_ >= static_cast<std::int64_t>(mesh_.positions_mm.size())) {
+            fail_index(largest_index_line_, largest_index_ + 1);
+        }
+        if (mesh_.triangles.empty()) throw InputError(file_ + ": no triangles");
+        return std::move(mesh_);
+    }
+
+  private:
+    [[noreturn]] void fail(std::int64_t line, const std::string& what) const {
+        throw InputError(fmt::format("{}:{}: {}", file_, line, what));
+    }
+
+    [[noreturn]] void fail_index(std::int64_t line, std::int64_t index) const {
+        fail(line, fmt::format("vertex index {} out of range: the file has {} vertices", index,
+                               mesh_.positions_mm.size()));
+    }
+
+    void read_vertex() {
+        glm::vec3 position(0.0F);
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::string_view token = scanner_.token();
+            const auto value = parse_double(token);
+            position[axis] = static_cast<float>(value.value_or(0.0));
+            if (!value || !std::isfinite(position[axis])) {
+                fail(scanner_.line(),
+                     fmt::format("expected 3 finite coordinates, got \"{}\"", printable(token)));
+            }
+        }
+        if (mesh_.positions_mm.size() >= std::numeric_limits<std::uint32_t>::max()) {
+            fail(scanner_.line(), "more vertices than 32-bit indices can count");
+        }
+        mesh_.positions_mm.push_back(position);
+    }
+
+    void read_face() {
+        glm::uvec3 triangle(0);
+        int corners = 0;
+        for (std::string_view token = scanner_.token(); !token.empty(); token = scanner_.token()) {
+            if (token.front() == '#') break;
+            const std::uint32_t index = read_index(token);
+            if (corners < 2) {
+                triangle[corners] = index;
+            } else {
+                triangle.z = index;
+                mesh_.triangles.push_back(triangle);
+                triangle.y = index;
+            }
+            ++corners;
+        }
+        if (corners < 3)
+            fail(scanner_.line(), fmt::format("expected a face of 3 or more vertices, got {}", corners));
+    }
+
+    // "7", "7/1", "7//3", "7/1/3" or, counted back from the last vertex, "-2".
+    std::uint32_t read_index(std::string_view token) {
+        const auto number = parse_integer(token.substr(0, token.find('/')));
+        if (!number || *number == 0) {
+            fail(scanner_.line(), fmt::format("expected a vertex index, got \"{}\"", printable(token)));
+        }
+        const auto count = static_cast<std::int64_t>(mesh_.positions_mm.size());
+        const bool too_far_back = *number < -count;
+        if (too_far_back || *number > std::numeric_limits<std::uint32_t>::max())
+            fail_index(scanner_.line(), *number);
+        const std::int64_t index = *number > 0 ? *number - 1 : count + *number;
+        if (index > largest_index_) {
+            largest_index_ = index;
+            largest_index_line_ = scanner_.line();
+        }
+        return static_cast<std::uint32_t>(index);
+    }
+
+    TextScanner scanner_;
+    const std::string& file_;
+    Mesh mesh_;
+    std::int64_t largest_index_ = -1;  // a face may come before its vertices, so this is checked at the end
+    std::int64_t largest_index_line_ = 0;
+};
+
+}  // namespace
+
+Mesh parse_obj(std::string_view text, const std::string& file) {
+    return ObjParser(text, file).parse();
+}
+
+}  // namespace stokes

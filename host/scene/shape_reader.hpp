@@ -1,0 +1,23 @@
+// Shapes of a scene file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "host/scene/json_cursor.hpp"
+#include "host/scene/scene.hpp"
+
+namespace stokes {
+
+// Reads "shapes" into scene.shapes, in world space; scene.materials are read already. Throws InputError.
+void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene);
+
+// Appends a finished shape: drops triangles without area with a warning; throws InputError at where when none
+// is left, or when a coordinate is not finite or too large. Returns its index.
+int add_shape(const JsonCursor& where, Shape shape, Scene& scene);
+
+// The key "name" of a shape or light, or "KIND INDEX" without one; a name in taken is an error.
+std::string read_own_name(const JsonCursor& where, const std::string& fallback,
+                          const std::vector<std::string>& taken);
+
+}  // namespace stokes

@@ -1,0 +1,34 @@
+// Meshes of the simple shapes, in their own coordinates: y is up, triangles counter-clockwise seen from
+// outside.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "host/scene/scene.hpp"
+
+namespace stokes {
+
+// Segments of round shapes, where the scene does not say.
+inline constexpr int default_segments = 128;
+
+// Centred on the origin.
+Mesh make_box(const glm::dvec3& size_mm);
+
+// Poles on the y axis; segments >= 4 around the equator, half as many (rounded down) from pole to pole. The
+// vertices lie on the sphere, so that area and volume are a little below the sphere's.
+Mesh make_sphere(double radius_mm, int segments = default_segments);
+
+// In the plane y = 0, facing +y: width along x, height along z.
+Mesh make_rectangle(double width_mm, double height_mm);
+
+// In the plane y = 0, facing +y; segments >= 3 around the edge.
+Mesh make_disk(double radius_mm, int segments = default_segments);
+
+// Upright, base in the plane y = 0, with sides >= 3; radius to the corners, the first of which lies on the +x
+// axis.
+Mesh make_prism(int sides, double radius_mm, double height_mm);
+
+// A prism of many sides.
+Mesh make_cylinder(double radius_mm, double height_mm, int segments = default_segments);
+
+}  // namespace stokes

@@ -1,0 +1,102 @@
+#include <filesystem>
+
+#include "host/scene/csv_table.hpp"
+#include "host/scene/text_input.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace stokes;
+
+TEST_CASE("A CSV table has its columns, rows and their lines") {
+    const CsvTable table =
+        parse_csv("# title\n# STATUS: MODEL\n\nnm, a,b\n300, 1,+2.5\r\n\n400,1e-3,-4\n", "t.csv");
+    CHECK(table.columns == std::vector<std::string>{"nm", "a", "b"});
+    REQUIRE(table.values.size() == 3);
+    CHECK(table.values[0] == std::vector<double>{300, 400});
+    CHECK(table.values[1] == std::vector<double>{1, 1e-3});
+    CHECK(table.values[2] == std::vector<double>{2.5, -4});
+    CHECK(table.lines == std::vector<std::int64_t>{5, 7});
+}
+
+TEST_CASE("A CSV column becomes a spectrum") {
+    const CsvTable table = parse_csv("nm,a,b\n300,1,2\n400,3,-4", "t.csv");
+    const Spectrum a = csv_spectrum(table, "a", Outside::hold);
+    CHECK(a.at(350) == Approx(2.0));
+    CHECK(a.at(500) == 3.0);
+    CHECK(csv_spectrum(table, "a", Outside::zero).at(500) == 0.0);
+    CHECK(input_error([&] { csv_spectrum(table, "b", Outside::zero); }) ==
+          "t.csv:3: b: expected no negative value, got -4");
+    CHECK(input_error([&] { csv_spectrum(table, "c", Outside::zero); }) ==
+          "t.csv: no column \"c\"; expected one of: a, b");
+    CHECK(input_error([&] { csv_spectrum(table, "nm", Outside::zero); }) ==
+          "t.csv: no column \"nm\"; expected one of: a, b");
+}
+
+TEST_CASE("Bad CSV is one line with file and line") {
+    struct Case {
+        std::string text;
+        std::string expected;
+    };
+    const Case cases[] = {
+        {"", "t.csv:1: expected a line of column names and rows of numbers"},
+        {"# only a header\n", "t.csv:2: expected a line of column names"},
+        {"nm,a\n", "t.csv:2: expected a line of column names and rows"},
+        {"nm\n300\n", "t.csv:1: expected a wavelength column and at least one more"},
+        {"nm,a,a\n", "t.csv:1: column \"a\" named twice"},
+        {"nm,,a\n", "t.csv:1: expected column names, got an empty one"},
+        {"nm,a\n300,1\n400\n", "t.csv:3: expected 2 fields, got 1"},
+        {"nm,a\n300,1,2\n", "t.csv:2: expected 2 fields, got 3"},
+        {"nm,a\n300,white\n", "t.csv:2: a: expected a finite number, got \"white\""},
+        {"nm,a\n300,1 2\n", "t.csv:2: a: expected a finite number, got \"1 2\""},
+        {"nm,a\n300,\n", "t.csv:2: a: expected a finite number, got \"\""},
+        {"nm,a\n300,nan\n", "t.csv:2: a: expected a finite number, got \"nan\""},
+        {"nm,a\n300,inf\n", "t.csv:2: a: expected a finite number, got \"inf\""},
+        {"nm,a\n300,1e999\n", "t.csv:2: a: expected a finite number"},
+        {"nm,a\n300,1\n300,2\n",
+         "t.csv:3: nm: expected positive wavelengths that increase, got 300 after 300"},
+        {"nm,a\n300,1\n# late\n", "t.csv:3: expected 2 fields, got 1"},
+        {"nm,a\n-5,1\n", "t.csv:2: nm: expected positive wavelengths that increase, got -5"},
+    };
+    for (const Case& c : cases) {
+        INFO(c.text);
+        CHECK_THAT(input_error([&] { parse_csv(c.text, "t.csv"); }), Catch::Matchers::StartsWith(c.expected));
+    }
+}
+
+TEST_CASE("A CSV file that cannot be read says so") {
+    const TemporaryFolder folder;
+    CHECK(input_error([&] { read_csv(folder.file("no.csv")); }) ==
+          folder.file("no.csv") + ": cannot read: No such file or directory");
+    CHECK_THAT(input_error([&] { read_csv(folder.path()); }),
+               Catch::Matchers::StartsWith(folder.path() + ": cannot read: "));
+    put_file(folder.file("t.csv"), "nm,a\n300,7\n");
+    CHECK(read_csv(folder.file("t.csv")).values[1] == std::vector<double>{7});
+}
+
+TEST_CASE("Every shipped table over wavelength can be read, without negative values") {
+    int tables = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(STOKES_SOURCE_DIR "/tables")) {
+        const std::string path = entry.path().string();
+        if (entry.path().extension() != ".csv") continue;
+        if (read_file(path).find("\nwavelength_nm,") == std::string::npos) continue;
+        INFO(path);
+        ++tables;
+        const CsvTable table = read_csv(path);
+        for (std::size_t i = 1; i < table.columns.size(); ++i) {
+            CHECK_NOTHROW(csv_spectrum(table, table.columns[i], Outside::zero));
+        }
+    }
+    CHECK(tables == 12);
+}
+
+TEST_CASE("Names that were probably meant are found") {
+    const std::vector<std::string> names = {"radius_mm", "height_mm", "up", "power_W"};
+    CHECK(closest_name("radius", names) == "radius_mm");
+    CHECK(closest_name("Radius_MM", names) == "radius_mm");
+    CHECK(closest_name("hieght_mm", names) == "height_mm");
+    CHECK(closest_name("power_w", names) == "power_W");
+    CHECK(closest_name("colour", names).empty());
+    CHECK(closest_name("", names).empty());
+    CHECK(edit_distance("kitten", "sitting") == 3);
+}

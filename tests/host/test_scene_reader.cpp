@@ -1,0 +1,276 @@
+#include <cmath>
+
+#include "host/scene/mesh.hpp"
+#include "host/scene/scene_reader.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace stokes;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+const std::string base = R"({
+  "format": "stokes-scene", "version": 1, "transport": "paper",
+  "render": {"passes": 4, "photons_per_pass": 1000, "alpha": 0.5, "radius_mm": 2, "seed": 9},
+  "film": {"width": 8, "height": 6, "exposure_ev": 1.5},
+  "camera": {"position_mm": [0, 0, 50], "target_mm": [0, 0, 0], "up": [0, 2, 0], "vertical_fov_deg": 30},
+  "spectra": {"lamp": {"pairs": [[300, 0], [400, 2]]}},
+  "media": {"stone": {"sigma_s_per_mm": 2, "scale_sigma_s": 0.5, "sigma_a_per_mm": {"constant": 0.1}, "eta": 1.5}},
+  "fluorophores": {"dye": {"excitation": {"pairs": [[300, 1], [400, 0]]}, "emission": {"pairs": [[500, 1]]}}},
+  "materials": {
+    "floor": {"type": "diffuse", "reflectance": {"pairs": [[400, 0.2], [500, 0.6]]}},
+    "glow": {"type": "translucent", "medium": "stone", "fluorophore": "dye", "fluorescent_fraction": 0.5}
+  },
+  "lights": [
+    {"type": "disk", "center_mm": [0, 100, 0], "normal": [0, -1, 0], "radius_mm": 10, "spectrum": "lamp", "power_W": 5}
+  ],
+  "shapes": [
+    {"type": "sphere", "material": "glow", "radius_mm": 10, "segments": 16}
+  ]
+})";
+
+std::string with(const std::string& what, const std::string& replacement) {
+    const std::size_t at = base.find(what);
+    if (at == std::string::npos) throw std::logic_error("not in the scene: " + what);
+    return std::string(base).replace(at, what.size(), replacement);
+}
+
+Scene scene_with(const std::string& what, const std::string& replacement) {
+    return parse_scene(with(what, replacement), "s.json");
+}
+
+}  // namespace
+
+TEST_CASE("A scene's settings, media and materials arrive as written") {
+    const Scene scene = parse_scene(base, "s.json");
+    CHECK(scene.file == "s.json");
+    CHECK(scene.render.passes == 4);
+    CHECK(scene.render.photons_per_pass == 1000);
+    CHECK(scene.render.alpha == 0.5);
+    CHECK(scene.render.radius_mm == 2.0);
+    CHECK(scene.render.seed == 9);
+    CHECK(scene.film.width == 8);
+    CHECK(scene.film.height == 6);
+    CHECK(scene.film.exposure_ev == 1.5);
+    CHECK(scene.camera.position_mm == glm::dvec3(0, 0, 50));
+    CHECK(scene.camera.up == glm::dvec3(0, 1, 0));
+    CHECK(scene.camera.vertical_fov_deg == 30);
+    REQUIRE(scene.media.size() == 1);
+    CHECK(scene.media[0].sigma_s.at(777) == 1.0);
+    CHECK(scene.media[0].sigma_a.at(777) == 0.1);
+    CHECK(scene.media[0].eta == 1.5);
+    CHECK(scene.media[0].dipole_eta == 1.0);
+    REQUIRE(scene.fluorophores.size() == 1);
+    CHECK(scene.fluorophores[0].conversion == 0.02);
+    CHECK(scene.fluorophores[0].excitation.at(350) == Approx(0.5));
+    CHECK(scene.fluorophores[0].excitation.at(299) == 0.0);
+    REQUIRE(scene.materials.size() == 3);
+    CHECK(scene.materials[0].kind == MaterialKind::diffuse);
+    CHECK(scene.materials[0].reflectance.at(450) == Approx(0.4));
+    CHECK(scene.materials[0].reflectance.at(700) == 0.6);
+    CHECK(scene.materials[1].kind == MaterialKind::translucent);
+    CHECK((scene.materials[1].medium == 0 && scene.materials[1].fluorophore == 0 &&
+           scene.materials[1].subsurface));
+    CHECK(scene.materials[2].kind == MaterialKind::black);
+}
+
+TEST_CASE("What a scene leaves out has its default") {
+    const Scene scene = scene_with(
+        R"(  "render": {"passes": 4, "photons_per_pass": 1000, "alpha": 0.5, "radius_mm": 2, "seed": 9},
+  "film": {"width": 8, "height": 6, "exposure_ev": 1.5},)",
+        "");
+    const RenderSettings defaults;
+    CHECK(scene.render.passes == defaults.passes);
+    CHECK(scene.render.photons_per_pass == defaults.photons_per_pass);
+    CHECK(scene.render.alpha == defaults.alpha);
+    CHECK_FALSE(scene.render.radius_mm);
+    CHECK(scene.film.width == Film().width);
+    CHECK_FALSE(scene.film.exposure_ev);
+    CHECK_FALSE(scene_with("\"exposure_ev\": 1.5", "\"exposure_ev\": \"auto\"").film.exposure_ev);
+}
+
+TEST_CASE("Shapes and emitters share one list, each emitter with its surface") {
+    const Scene scene = parse_scene(base, "s.json");
+    REQUIRE(scene.shapes.size() == 2);
+    REQUIRE(scene.lights.size() == 1);
+    CHECK(scene.shapes[0].name == "shape 0");
+    CHECK((scene.shapes[0].material == 1 && scene.shapes[0].light == -1 && scene.shapes[0].body == 0));
+    CHECK(scene.lights[0].shape == 1);
+    CHECK((scene.shapes[1].light == 0 && scene.shapes[1].material == 2 && scene.shapes[1].body == 1));
+    CHECK(scene.shapes[1].name == scene.lights[0].name);
+    CHECK(scene.body_count == 2);
+    for (const glm::vec3& p : scene.shapes[1].mesh.positions_mm) CHECK(p.y == 100.0F);
+}
+
+TEST_CASE("Shapes of one body have one number") {
+    const std::string one = R"("shapes": [)";
+    const std::string sphere = R"({"type": "sphere", "material": "glow", "radius_mm": 1, "body": "b"},)";
+    const std::string floor = R"({"type": "disk", "material": "floor", "radius_mm": 1},)";
+    const Scene scene = scene_with(one, one + sphere + floor + sphere);
+    CHECK((scene.shapes[0].body == 0 && scene.shapes[1].body == 1 && scene.shapes[2].body == 0));
+    CHECK((scene.shapes[3].body == 2 && scene.body_count == 4));
+}
+
+TEST_CASE("Transforms apply in order, and mirroring keeps the outside out") {
+    const std::string sphere = R"({"type": "sphere", "material": "glow", "radius_mm": 10, "segments": 16})";
+    const std::string box = R"({"type": "box", "material": "glow", "size_mm": [2, 4, 6], "transform": [)";
+    const Scene scene = scene_with(sphere, box + R"({"translate_mm": [1, 0, 0]}, {"scale": 2},
+        {"rotate_axis": [0, 0, 5], "angle_deg": 90}, {"scale": [-1, 1, 1]}]})");
+    const Bounds bounds = mesh_bounds(scene.shapes[0].mesh);
+    // x in 0..2 -> 0..4 -> becomes y; y in -4..4 -> becomes x, mirrored.
+    CHECK(bounds.low_mm.x == Approx(-4).margin(1e-6));
+    CHECK(bounds.high_mm.x == Approx(4).margin(1e-6));
+    CHECK(bounds.low_mm.y == Approx(0).margin(1e-6));
+    CHECK(bounds.high_mm.y == Approx(4).margin(1e-6));
+    CHECK(mesh_volume_mm3(scene.shapes[0].mesh) == Approx(48 * 8));
+}
+
+TEST_CASE("The flux of an emitter sums to its power, or to pi area radiance") {
+    const Scene power = parse_scene(base, "s.json");
+    CHECK(power.lights[0].flux.sum_1nm(300, 780) == Approx(5.0));
+    CHECK(power.lights[0].flux.at(350) == Approx(power.lights[0].flux.at(400) / 2));
+
+    const Scene radiance = scene_with("\"power_W\": 5", "\"radiance_W_m2_sr\": 7");
+    const double area_m2 = mesh_area_mm2(radiance.shapes[1].mesh) * 1e-6;
+    CHECK(area_m2 == Approx(pi * 1e-4).epsilon(1e-3));
+    CHECK(radiance.lights[0].flux.sum_1nm(300, 780) == Approx(pi * area_m2 * 7));
+
+    const Scene absolute = scene_with("\"power_W\": 5", "\"radiance_scale_W_m2_sr_nm\": 3");
+    CHECK(absolute.lights[0].flux.at(400) == Approx(pi * area_m2 * 3 * 2));
+
+    const Scene narrow =
+        scene_with("\"seed\": 9", "\"seed\": 9, \"lambda_min_nm\": 380, \"lambda_max_nm\": 399");
+    CHECK(narrow.lights[0].flux.sum_1nm(380, 399) == Approx(5.0));
+}
+
+TEST_CASE("Emitters: a rectangle faces along its normal, a sphere outward") {
+    const std::string disk =
+        R"("type": "disk", "center_mm": [0, 100, 0], "normal": [0, -1, 0], "radius_mm": 10)";
+    const Scene wall = scene_with(
+        disk, R"("type": "rectangle", "center_mm": [5, 6, 7], "normal": [0, 0, -2], "up": [1, 1, 0],
+                 "width_mm": 2, "height_mm": 4)");
+    const Mesh& mesh = wall.shapes[1].mesh;
+    CHECK(mesh_area_mm2(mesh) == Approx(8));
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::vec3 a = mesh.positions_mm[t.x];
+        const glm::vec3 n =
+            glm::normalize(glm::cross(mesh.positions_mm[t.y] - a, mesh.positions_mm[t.z] - a));
+        CHECK(n.z == Approx(-1));
+    }
+    // Half the height along up and half the width across it: the farthest corner along (1, 1, 0) is 2 away.
+    float along_up = 0;
+    for (const glm::vec3& p : mesh.positions_mm)
+        along_up = std::max(along_up, (p.x - 5 + p.y - 6) / std::sqrt(2.0F));
+    CHECK(along_up == Approx(2));
+
+    const Scene ball = scene_with(disk, R"("type": "sphere", "center_mm": [0, 100, 0], "radius_mm": 10)");
+    CHECK(mesh_volume_mm3(ball.shapes[1].mesh) > 0.0);
+    CHECK(mesh_bounds(ball.shapes[1].mesh).low_mm.y == Approx(90));
+    CHECK(ball.lights[0].flux.sum_1nm(300, 780) == Approx(5.0));
+}
+
+TEST_CASE("Beams carry irradiance times their cross-section") {
+    const std::string light =
+        R"({"type": "disk", "center_mm": [0, 100, 0], "normal": [0, -1, 0], "radius_mm": 10, "spectrum": "lamp", "power_W": 5})";
+    const Scene disk =
+        scene_with(light, R"({"name": "sun", "type": "beam", "section": "disk", "position_mm": [0, 9, 0],
+        "direction": [0, -3, 0], "radius_mm": 20, "spectrum": "lamp", "irradiance_W_m2": 10})");
+    const Light& round = disk.lights[0];
+    CHECK((round.name == "sun" && round.kind == LightKind::beam && round.section == BeamSection::disk));
+    CHECK(round.shape == -1);
+    CHECK(disk.shapes.size() == 1);
+    CHECK(round.direction == glm::dvec3(0, -1, 0));
+    CHECK(round.flux.sum_1nm(300, 780) == Approx(10 * pi * 4e-4));
+    CHECK(glm::length(round.half_u_mm) == Approx(20));
+    CHECK(glm::length(round.half_v_mm) == Approx(20));
+
+    const Scene rectangle = scene_with(
+        light, R"({"type": "beam", "section": "rectangle", "position_mm": [0, 9, 0], "up": [1, 5, 0],
+        "direction": [0, -3, 0], "width_mm": 20, "height_mm": 30, "spectrum": "lamp", "irradiance_W_m2": 10})");
+    const Light& flat = rectangle.lights[0];
+    CHECK(flat.section == BeamSection::rectangle);
+    CHECK(flat.flux.sum_1nm(300, 780) == Approx(10 * 6e-4));
+    CHECK(glm::length(flat.half_v_mm - glm::dvec3(15, 0, 0)) == Approx(0).margin(1e-9));
+    CHECK(std::abs(flat.half_u_mm.z) == Approx(10));
+    CHECK(glm::dot(flat.half_u_mm, flat.direction) == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("Spectra come from files, illuminants, pairs and constants, with the ends each use asks for") {
+    const TemporaryFolder folder;
+    put_file(folder.file("t.csv"), "# header\nnm,a\n400,0.25\n500,0.5\n");
+    const auto reflectance = [&](const std::string& spectrum) {
+        const std::string text = with(R"({"pairs": [[400, 0.2], [500, 0.6]]})", spectrum);
+        return parse_scene(text, folder.file("s.json")).materials[0].reflectance;
+    };
+    CHECK(reflectance("0.3").at(555) == 0.3);
+    CHECK(reflectance(R"({"constant": 0.3})").at(900) == 0.3);
+    CHECK(reflectance(R"({"file": "t.csv", "column": "a", "scale": 2})").at(450) == Approx(0.75));
+    CHECK(reflectance(R"({"file": "t.csv", "column": "a"})").at(700) == 0.5);
+    CHECK(reflectance(R"({"file": "t.csv", "column": "a", "outside": "zero"})").at(700) == 0.0);
+    CHECK(reflectance(R"({"file": "../)" + folder.path().substr(folder.path().rfind('/') + 1) +
+                      R"(/t.csv", "column": "a"})")
+              .at(400) == 0.25);
+
+    const Scene lit = scene_with("\"spectrum\": \"lamp\"", R"("spectrum": {"illuminant": "D65"})");
+    // CIE D65 at 450 and 560 nm: 117.008 and 100.
+    CHECK(lit.lights[0].flux.at(450) / lit.lights[0].flux.at(560) == Approx(1.17008).epsilon(1e-5));
+    CHECK(lit.lights[0].flux.at(831) == 0.0);
+    const Scene held = scene_with(R"([[300, 0], [400, 2]]})", R"([[300, 0], [400, 2]], "outside": "hold"})");
+    CHECK(held.lights[0].flux.at(700) == held.lights[0].flux.at(400));
+}
+
+TEST_CASE("Surface fluorescence needs no medium") {
+    const Scene scene =
+        scene_with(R"("medium": "stone", "fluorophore")", R"("subsurface": false, "fluorophore")");
+    CHECK_FALSE(scene.materials[1].subsurface);
+    CHECK(scene.materials[1].medium == -1);
+    CHECK(scene.materials[1].fluorophore == 0);
+}
+
+TEST_CASE("An emitter may have a material of its own") {
+    const Scene scene = scene_with("\"power_W\": 5", "\"power_W\": 5, \"material\": \"floor\"");
+    CHECK(scene.shapes[1].material == 0);
+    CHECK(scene.materials.size() == 2);
+}
+
+TEST_CASE("The exhibit: three dyes in two rows, each object standing on its prism") {
+    const Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/prisms.json");
+    REQUIRE(scene.shapes.size() == 14);
+    const auto find = [&](const std::string& name) -> const Shape& {
+        for (const Shape& shape : scene.shapes) {
+            if (shape.name == name) return shape;
+        }
+        throw std::logic_error("no shape " + name);
+    };
+    for (const std::string row : {"front ", "back "}) {
+        const std::string pairs[][2] = {
+            {"green prism", "sphere"}, {"yellow prism", "dragon"}, {"red prism", "bunny"}};
+        for (const auto& [prism_name, object_name] : pairs) {
+            INFO(row << prism_name);
+            const Shape& prism = find(row + prism_name);
+            const Material& material = scene.materials[static_cast<std::size_t>(prism.material)];
+            CHECK(material.kind == MaterialKind::translucent);
+            CHECK(material.subsurface == (row == "front "));
+            CHECK(material.fluorescent_fraction == (row == "front " ? 0.5 : 1.0));
+            const Bounds below = mesh_bounds(prism.mesh);
+            const Bounds above = mesh_bounds(find(row + object_name).mesh);
+            CHECK(above.low_mm.y == Approx(below.high_mm.y).margin(0.01));
+            CHECK((above.low_mm.x > below.low_mm.x - 1 && above.high_mm.x < below.high_mm.x + 1));
+            CHECK((above.low_mm.z > below.low_mm.z - 1 && above.high_mm.z < below.high_mm.z + 1));
+        }
+    }
+    CHECK(scene.media[0].sigma_s.at(300) == Approx(1.5));
+    CHECK(scene.media[0].sigma_a.at(300) == Approx(0.0071));
+    CHECK((scene.media[0].eta == 1.5 && scene.media[0].dipole_eta == 1.0));
+    CHECK(scene.lights[0].flux.sum_1nm(300, 780) == Approx(10.0));
+}
+
+TEST_CASE("The small scene reads") {
+    const Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/sphere.json");
+    CHECK(scene.shapes.size() == 3);
+    CHECK(mesh_bounds(scene.shapes[1].mesh).low_mm.y == Approx(0).margin(1e-5));
+}

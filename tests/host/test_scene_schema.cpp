@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "host/scene/scene_keys.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace stokes;
+using Json = nlohmann::json;
+using Names = std::set<std::string>;
+
+namespace {
+
+Json read_schema() {
+    std::ifstream file(STOKES_SOURCE_DIR "/scenes/scene.schema.json");
+    return Json::parse(file);
+}
+
+// Every "$ref" below a node.
+void collect_references(const Json& node, Names& found) {
+    for (const auto& [key, value] : node.items()) {
+        if (key == "$ref") found.insert(value.get<std::string>());
+        if (value.is_structured()) collect_references(value, found);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("The schema and the reader know the same objects with the same keys") {
+    const Json schema = read_schema();
+    CHECK(schema.at("$ref") == "#/$defs/scene");
+    Names kinds;
+    for (const ObjectKeys& keys : all_object_keys()) {
+        INFO(keys.kind);
+        CHECK(kinds.insert(keys.kind).second);
+        REQUIRE(schema.at("$defs").contains(keys.kind));
+        const Json& object = schema.at("$defs").at(keys.kind);
+        CHECK(object.at("additionalProperties") == false);
+        CHECK_FALSE(object.at("description").get<std::string>().empty());
+
+        Names in_schema;
+        for (const auto& [key, value] : object.at("properties").items()) in_schema.insert(key);
+        Names in_reader(keys.required.begin(), keys.required.end());
+        in_reader.insert(keys.optional.begin(), keys.optional.end());
+        CHECK(in_reader.size() == keys.required.size() + keys.optional.size());
+        CHECK(in_schema == in_reader);
+        CHECK(object.at("required").get<Names>() == Names(keys.required.begin(), keys.required.end()));
+    }
+    for (const auto& [kind, object] : schema.at("$defs").items()) {
+        INFO(kind);
+        CHECK((object.contains("properties") == (kinds.count(kind) == 1)));
+    }
+}
+
+TEST_CASE("Every definition of the schema is referred to, and every reference is defined") {
+    const Json schema = read_schema();
+    Names references;
+    collect_references(schema, references);
+    Names defined;
+    for (const auto& [kind, object] : schema.at("$defs").items()) defined.insert("#/$defs/" + kind);
+    CHECK(references == defined);
+}
+
+TEST_CASE("Every key of the schema says what it is, or is one of a few words, or refers to what says so") {
+    const Json schema = read_schema();
+    for (const ObjectKeys& keys : all_object_keys()) {
+        for (const auto& [key, value] : schema.at("$defs").at(keys.kind).at("properties").items()) {
+            INFO(keys.kind << "." << key);
+            CHECK((value.contains("description") || value.contains("const") || value.contains("enum") ||
+                   value.contains("$ref")));
+        }
+    }
+}
