@@ -50,6 +50,14 @@ const glm::dmat3& xyz_from_rec709() {
     return matrix;
 }
 
+// Oklab's two matrices, each row of the publication a row here: multiply from the left, vector * matrix.
+const glm::dmat3 cones_from_rec709(0.4122214708, 0.5363325363, 0.0514459929,  //
+                                   0.2119034982, 0.6806995451, 0.1073969566,  //
+                                   0.0883024619, 0.2817188376, 0.6299787005);
+const glm::dmat3 oklab_from_cube_roots(0.2104542553, 0.7936177850, -0.0040720468,  //
+                                       1.9779984951, -2.4285922050, 0.4505937099,  //
+                                       0.0259040371, 0.7827717662, -0.8086757660);
+
 }  // namespace
 
 Spectrum cie_spectrum(const std::string& file, const std::string& column) {
@@ -108,8 +116,16 @@ glm::dvec3 xyz_of_rec709(const glm::dvec3& rgb) {
     return xyz_from_rec709() * rgb;
 }
 
-double luminance(const glm::dvec3& rgb) {
-    return xyz_of_rec709(rgb).y;
+glm::dvec3 oklab_of_rec709(const glm::dvec3& rgb) {
+    const glm::dvec3 cones = rgb * cones_from_rec709;
+    return glm::dvec3(std::cbrt(cones.x), std::cbrt(cones.y), std::cbrt(cones.z)) * oklab_from_cube_roots;
+}
+
+glm::dvec3 rec709_of_oklab(const glm::dvec3& lab) {
+    static const glm::dmat3 rec709_from_cones = glm::inverse(cones_from_rec709);
+    static const glm::dmat3 cube_roots_from_oklab = glm::inverse(oklab_from_cube_roots);
+    const glm::dvec3 root = lab * cube_roots_from_oklab;
+    return (root * root * root) * rec709_from_cones;
 }
 
 double srgb_encode(double linear) {

@@ -36,8 +36,10 @@ glm::dvec3 rec709_of_xyz(const glm::dvec3& xyz);
 glm::dvec3 xyz_of_rec709(const glm::dvec3& rgb);
 const glm::dmat3& rec709_from_xyz();  // the matrix itself, columns first as GLM has them
 
-// Luminance of linear Rec. 709, in the unit of its white.
-double luminance(const glm::dvec3& rgb);
+// Lightness L and the opponent axes a, b of linear Rec. 709 in Oklab, and back (B. Ottosson, "A perceptual
+// color space for image processing", 2020). The angle of (a, b) is the hue; defined outside the gamut too.
+glm::dvec3 oklab_of_rec709(const glm::dvec3& rgb);
+glm::dvec3 rec709_of_oklab(const glm::dvec3& lab);
 
 // The sRGB transfer function of IEC 61966-2-1, linear [0, 1] to encoded [0, 1] and back.
 double srgb_encode(double linear);

@@ -9,21 +9,36 @@ namespace stokes {
 namespace {
 
 constexpr double shoulder_start = 0.8;
+constexpr int chroma_steps = 14;  // halvings: well below what 8 bits show
 constexpr double lit_fraction = 1.0 / 200.0;
 
 double largest(const glm::dvec3& rgb) {
     return std::max({rgb.r, rgb.g, rgb.b});
 }
 
-// rgb mixed with grey of its luminance just enough to have no negative channel; black where there is no
-// light.
+double smallest(const glm::dvec3& rgb) {
+    return std::min({rgb.r, rgb.g, rgb.b});
+}
+
+// rgb with just so much of its chroma that no channel is negative; black where there is no light.
 glm::dvec3 into_gamut(const glm::dvec3& rgb) {
-    const double grey = luminance(rgb);
-    if (!std::isfinite(grey) || grey <= 0.0) return glm::dvec3(0.0);
-    const double smallest = std::min({rgb.r, rgb.g, rgb.b});
-    if (smallest >= 0.0) return rgb;
-    const double saturation = grey / (grey - smallest);
-    return glm::max(glm::dvec3(grey) + saturation * (rgb - grey), glm::dvec3(0.0));
+    if (smallest(rgb) >= 0.0 && std::isfinite(largest(rgb))) return rgb;
+    const glm::dvec3 lab = oklab_of_rec709(rgb);
+    const double sum = lab.x + lab.y + lab.z;
+    if (!std::isfinite(sum) || lab.x <= 0.0) return glm::dvec3(0.0);
+    glm::dvec3 inside = rec709_of_oklab({lab.x, 0.0, 0.0});
+    double low = 0.0, high = 1.0;
+    for (int step = 0; step < chroma_steps; ++step) {
+        const double chroma = 0.5 * (low + high);
+        const glm::dvec3 tried = rec709_of_oklab({lab.x, chroma * lab.y, chroma * lab.z});
+        if (smallest(tried) >= 0.0) {
+            low = chroma;
+            inside = tried;
+        } else {
+            high = chroma;
+        }
+    }
+    return inside;
 }
 
 double shoulder(double value) {

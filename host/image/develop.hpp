@@ -16,9 +16,9 @@ struct Rgb8 {
 };
 
 // The film's total times 2^exposure_ev (0 EV: 1 cd/m^2 is white) in sRGB; non-finite pixels become black.
-// Colours outside Rec. 709, as saturated fluorescence is, are mixed with grey of their own luminance until no
-// channel is negative. Highlights: the largest channel m becomes m up to 0.8 and 1 - 0.2 exp(-(m - 0.8) /
-// 0.2) above, and the other channels scale along, so that neither step shifts the hue.
+// Colours outside Rec. 709, as saturated fluorescence is, lose Oklab chroma, at the same hue and lightness,
+// until no channel is negative. Highlights: the largest channel m becomes m up to 0.8 and 1 - 0.2 exp(-(m -
+// 0.8) / 0.2) above, and the other channels scale along.
 Rgb8 develop(const FilmImage& film, double exposure_ev);
 
 // The exposure that puts the 95th percentile of the lit pixels at 0.8, where the shoulder begins. A pixel's

@@ -42,10 +42,19 @@ TEST_CASE("the Rec. 709 matrix is the published one") {
 
 // ITU-R BT.709-6 item 3.2: E'Y = 0.2126 R + 0.7152 G + 0.0722 B.
 TEST_CASE("luminance weights are those of Rec. 709") {
-    CHECK(luminance({1, 0, 0}) == Approx(0.2126).margin(5e-5));
-    CHECK(luminance({0, 1, 0}) == Approx(0.7152).margin(5e-5));
-    CHECK(luminance({0, 0, 1}) == Approx(0.0722).margin(5e-5));
+    CHECK(xyz_of_rec709({1, 0, 0}).y == Approx(0.2126).margin(5e-5));
+    CHECK(xyz_of_rec709({0, 1, 0}).y == Approx(0.7152).margin(5e-5));
+    CHECK(xyz_of_rec709({0, 0, 1}).y == Approx(0.0722).margin(5e-5));
     check_equal(xyz_of_rec709(rec709_of_xyz({0.3, 0.4, 0.5})), {0.3, 0.4, 0.5}, 1e-14);
+}
+
+// Ottosson's table of XYZ -> Lab pairs, given to three decimals.
+TEST_CASE("Oklab has its author's values and inverts") {
+    check_equal(oklab_of_rec709(rec709_of_xyz({0.950, 1.000, 1.089})), {1.000, 0.000, 0.000}, 2e-3);
+    check_equal(oklab_of_rec709(rec709_of_xyz({1.000, 0.000, 0.000})), {0.450, 1.236, -0.019}, 2e-3);
+    check_equal(oklab_of_rec709(rec709_of_xyz({0.000, 1.000, 0.000})), {0.922, -0.671, 0.263}, 2e-3);
+    check_equal(oklab_of_rec709(rec709_of_xyz({0.000, 0.000, 1.000})), {0.153, -1.415, -0.449}, 2e-3);
+    check_equal(rec709_of_oklab(oklab_of_rec709({0.7, -0.1, 3.0})), {0.7, -0.1, 3.0}, 1e-12);
 }
 
 // CIE 15:2018 table T.3: chromaticity of D65 for the 2-degree observer x = 0.31272, y = 0.32903.
