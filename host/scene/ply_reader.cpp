@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "host/core/error.hpp"
@@ -50,44 +51,40 @@ class BinarySource {
         return file + ": " + record;
     }
     bool take(PlyType type, double& value) {
-        const std::size_t size = ply_type_size(type);
-        if (rest_.size() < size) return false;
-        char bytes[8];
-        std::memcpy(bytes, rest_.data(), size);
-        if (big_endian_) std::reverse(bytes, bytes + size);
-        rest_.remove_prefix(size);
-        value = decode(type, bytes);
-        return true;
+        switch (type) {
+            case PlyType::int8:
+                return take_as<std::int8_t>(value);
+            case PlyType::uint8:
+                return take_as<std::uint8_t>(value);
+            case PlyType::int16:
+                return take_as<std::int16_t>(value);
+            case PlyType::uint16:
+                return take_as<std::uint16_t>(value);
+            case PlyType::int32:
+                return take_as<std::int32_t>(value);
+            case PlyType::uint32:
+                return take_as<std::uint32_t>(value);
+            case PlyType::float32:
+                return take_as<float>(value);
+            case PlyType::float64:
+                break;
+        }
+        return take_as<double>(value);
     }
     std::string got() const { return "the end of the file"; }
 
   private:
     template <typename T>
-    static double as(const char* bytes) {
-        T value;
-        std::memcpy(&value, bytes, sizeof value);
-        return static_cast<double>(value);
-    }
-    static double decode(PlyType type, const char* bytes) {
-        switch (type) {
-            case PlyType::int8:
-                return as<std::int8_t>(bytes);
-            case PlyType::uint8:
-                return as<std::uint8_t>(bytes);
-            case PlyType::int16:
-                return as<std::int16_t>(bytes);
-            case PlyType::uint16:
-                return as<std::uint16_t>(bytes);
-            case PlyType::int32:
-                return as<std::int32_t>(bytes);
-            case PlyType::uint32:
-                return as<std::uint32_t>(bytes);
-            case PlyType::float32:
-                return as<float>(bytes);
-            case PlyType::float64:
-                break;
-        }
-        return as<double>(bytes);
+    bool take_as(double& value) {
+        if (rest_.size() < sizeof(T)) return false;
+        char bytes[sizeof(T)];
+        std::memcpy(bytes, rest_.data(), sizeof bytes);
+        if (big_endian_) std::reverse(std::begin(bytes), std::end(bytes));
+        T typed;
+        std::memcpy(&typed, bytes, sizeof bytes);
+        rest_.remove_prefix(sizeof bytes);
+        value = static_cast<double>(typed);
+        return true;
     }
 
     std::string_view rest_;
