@@ -13,8 +13,8 @@ using Json = nlohmann::json;
 namespace {
 
 PowerTable sample_table(bool multiple = false) {
-    const MediumSpectra medium{
-        "jelly \"A\"", {{300.0, 795.0}, {1.3, 0.7}, Outside::hold}, Spectrum::constant(0.0041), 1.5, 1.0};
+    const Spectrum sigma_s{{300.0, 795.0}, {1.3, 0.7}, Outside::hold};
+    const MediumSpectra medium{"jelly \"A\"", sigma_s, Spectrum::constant(0.0041), 1.5, 1.0};
     TableGrid grid;
     grid.r_mm = {0.0, 0.1, 0.7};
     grid.theta_deg = {0.0, 45.0, 89.1};

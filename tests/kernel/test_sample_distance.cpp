@@ -6,6 +6,7 @@
 #include "host/subsurface/distance_sampler.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
+#include "tests/support/statistics.hpp"
 
 using namespace stokes;
 
@@ -80,10 +81,9 @@ std::vector<float> draw(const PowerTable& table, float theta_deg, const std::vec
     const Buffer<float> angles(device, "angles", std::vector<float>(u.size(), theta_deg)),
         uniforms(device, "u", u);
     const Buffer<float> distances(device, "distances", u.size());
-    test_program("power_table.cl")
-        .kernel("draw_distances")
-        .launch(u.size(), mean_rows, cumulative_rows, sampler.shape, angles, uniforms, distances,
-                static_cast<std::uint32_t>(u.size()));
+    static Kernel kernel = test_program("power_table.cl").kernel("draw_distances");
+    kernel.launch(u.size(), mean_rows, cumulative_rows, sampler.shape, angles, uniforms, distances,
+                  static_cast<std::uint32_t>(u.size()));
     return distances.download();
 }
 
@@ -94,42 +94,24 @@ std::vector<float> uniforms(std::size_t count, unsigned seed) {
     return u;
 }
 
-// Upper tail of the chi-square distribution, by the cube-root normal approximation of Wilson and Hilferty.
-double chi_square_tail(double chi_square, double freedom) {
-    const double spread = 2.0 / (9.0 * freedom);
-    const double z = (std::cbrt(chi_square / freedom) - (1.0 - spread)) / std::sqrt(spread);
-    return 0.5 * std::erfc(z / std::sqrt(2.0));
-}
-
-// Half cells as bins, merged until each expects at least 25 of the samples.
-double chi_square_p_value(const std::vector<float>& samples, const AnalyticDensity& density) {
+// Of the chi-square test with half cells of the table as bins.
+double distribution_p_value(const std::vector<float>& samples, const AnalyticDensity& density) {
     std::vector<float> sorted = samples;
     std::sort(sorted.begin(), sorted.end());
-    const auto count = static_cast<double>(samples.size());
-    double chi_square = 0.0, from = 0.0, last_expected = 0.0;
-    std::size_t bins = 0, seen = 0;
-    for (std::size_t i = 1; i < 2 * density.r_mm.size() - 1; ++i) {
-        const double edge =
-            i % 2 == 0 ? density.r_mm[i / 2] : 0.5 * (density.r_mm[i / 2] + density.r_mm[i / 2 + 1]);
-        const double expected = count * (density.below(edge) - from);
-        const double left = count * (1.0 - density.below(edge));
-        const bool last = i + 2 == 2 * density.r_mm.size();
-        if (!last && (expected < 25.0 || left < 25.0)) continue;
-        const std::size_t up_to =
-            last ? sorted.size()
-                 : static_cast<std::size_t>(
-                       std::lower_bound(sorted.begin(), sorted.end(), static_cast<float>(edge)) -
-                       sorted.begin());
-        const double difference = static_cast<double>(up_to - seen) - expected;
-        chi_square += difference * difference / expected;
+    std::vector<double> observed, expected;
+    double from = 0.0;
+    auto start = sorted.begin();
+    const std::size_t bins = 2 * (density.r_mm.size() - 1);
+    for (std::size_t i = 1; i <= bins; ++i) {
+        const double edge = 0.5 * (density.r_mm[i / 2] + density.r_mm[(i + 1) / 2]);
+        const auto end =
+            i == bins ? sorted.end() : std::lower_bound(start, sorted.end(), static_cast<float>(edge));
+        observed.push_back(static_cast<double>(end - start));
+        expected.push_back(static_cast<double>(samples.size()) * (density.below(edge) - from));
         from = density.below(edge);
-        seen = up_to;
-        last_expected = expected;
-        ++bins;
+        start = end;
     }
-    REQUIRE(bins > 5);
-    REQUIRE(last_expected >= 25.0);
-    return chi_square_tail(chi_square, static_cast<double>(bins - 1));
+    return chi_square_p_value(observed, expected);
 }
 
 struct Case {
@@ -150,21 +132,20 @@ constexpr int case_count = 18;
 
 // Family of 18 chi-square and 18 mean tests, together wrong once in 1000: Sidak level 1 - 0.999^(1/36) each.
 TEST_CASE("distances follow the table's mean over all wavelengths", "[sample_distance]") {
-    const double level = 1.0 - std::pow(1.0 - 1e-3, 1.0 / (2.0 * case_count));
+    const double level = sidak_level(1e-3, 2 * case_count);
     unsigned seed = 1;
     for (const Case& c : cases())
         for (float theta_deg : c.theta_deg) {
             CAPTURE(c.table.component, theta_deg);
             const AnalyticDensity density(c.table, theta_deg);
             const std::vector<float> r = draw(c.table, theta_deg, uniforms(1u << 18, seed++));
-            CHECK(chi_square_p_value(r, density) > level);
+            CHECK(distribution_p_value(r, density) > level);
 
             double sum = 0.0;
             for (float x : r) sum += x;
             const auto count = static_cast<double>(r.size());
             const double mean = density.moment(1), variance = density.moment(2) - mean * mean;
-            const double z = (sum / count - mean) / std::sqrt(variance / count);
-            CHECK(std::erfc(std::abs(z) / std::sqrt(2.0)) > level);
+            CHECK(normal_two_sided((sum / count - mean) / std::sqrt(variance / count)) > level);
         }
     CHECK(seed == case_count + 1);
 }
