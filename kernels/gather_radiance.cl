@@ -1,0 +1,89 @@
+// What the camera rays see: light that surfaces emit, and the density estimate over the photon maps.
+// Surfaces have a front only, the side of their outward normal; their back is black.
+#include "lib/gather.clh"
+#include "lib/tiles.clh"
+#include "shared/camera.h"
+#include "shared/material.h"
+#include "shared/pass.h"
+#include "shared/photon.h"
+#include "shared/ray.h"
+
+// Sixteen products, added in a fixed order.
+inline float dot16(float16 a, float16 b) {
+    const float16 p = a * b;
+    const float8 q = p.lo + p.hi;
+    const float4 r = q.lo + q.hi;
+    return (r.x + r.z) + (r.y + r.w);
+}
+
+// Spectral radiance [W mm^-2 sr^-1 nm^-1] as a value of the film: X, Y, Z [cd/m^2], 0.
+inline float4 film_value(float16 radiance, __global const PassConstants* pass) {
+    return (float4)(dot16(radiance, vload16(0, pass->to_x)), dot16(radiance, vload16(0, pass->to_y)),
+                    dot16(radiance, vload16(0, pass->to_z)), 0.0f);
+}
+
+// The maps whose photons light a material.
+inline uint maps_of(MaterialRecord material) {
+    if (material.kind == STOKES_DIFFUSE) return 1u << STOKES_MAP_SURFACE;
+    if (material.kind != STOKES_TRANSLUCENT) return 0u;
+    if (material.medium == STOKES_NONE) return 1u << STOKES_MAP_FLUORESCENCE;
+    return (1u << STOKES_MAP_FLUORESCENCE) | (1u << STOKES_MAP_SINGLE) | (1u << STOKES_MAP_MULTIPLE);
+}
+
+// Work-items: one per camera ray, in the order of lib/tiles.clh. Finds the point each ray sees, and adds the
+// light it emits to the film's surface layer.
+// Reads rays, hits [width * height], triangles, shapes, materials of the scene, emitted[lights]
+// [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
+// Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
+__kernel void collect_points(CameraRecord camera, __global const PassConstants* pass, __global const Ray* rays,
+                             __global const Hit* hits, __global const Triangle* triangles,
+                             __global const ShapeRecord* shapes, __global const MaterialRecord* materials,
+                             __global const float16* emitted, __global GatherPoint* points,
+                             __global float4* film) {
+    const uint i = (uint)get_global_id(0);
+    const uint pixels = camera.width * camera.height;
+    if (i >= pixels) return;
+    const uint2 at = pixel_of_ray(i, camera.width, camera.height);
+    const Hit hit = hits[i];
+    GatherPoint point;
+    point.pixel = at.y * camera.width + at.x;
+    point.maps = 0u;
+    if (hit.triangle != STOKES_NONE) {
+        const Triangle t = triangles[hit.triangle];
+        const ShapeRecord shape = shapes[t.shape];
+        const float3 normal =
+            normalize(cross((float3)(t.e1x, t.e1y, t.e1z), (float3)(t.e2x, t.e2y, t.e2z)));
+        point.x = t.v0x + hit.u * t.e1x + hit.v * t.e2x;
+        point.y = t.v0y + hit.u * t.e1y + hit.v * t.e2y;
+        point.z = t.v0z + hit.u * t.e1z + hit.v * t.e2z;
+        point.nx = normal.x;
+        point.ny = normal.y;
+        point.nz = normal.z;
+        point.material = shape.material;
+        if (normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz < 0.0f) {
+            point.maps = maps_of(materials[shape.material]);
+            if (shape.light != STOKES_NONE)
+                film[STOKES_MAP_SURFACE * pixels + point.pixel] += film_value(emitted[shape.light], pass);
+        }
+    }
+    points[i] = point;
+}
+
+// Work-items: one per point; launched once per map. L = 1/(pi r^2) * sum over the map's photons of flux / pi
+// (eq. 6 of Kugita et al.), for the surface map times the reflectance.
+// Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row: a material's reflectance),
+// pass (to_x, to_y, to_z). Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
+__kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, HashGrid grid,
+                              __global const uint* cell_starts, __global const float* positions,
+                              __global const uint* normals, __global const float16* flux,
+                              __global const float16* spectra, __global const PassConstants* pass,
+                              __global float4* film) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= count || (points[i].maps & (1u << map)) == 0u) return;
+    const GatherPoint point = points[i];
+    const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux, (float3)(point.x, point.y, point.z),
+                                 (float3)(point.nx, point.ny, point.nz));
+    float16 radiance = sum * (M_1_PI_F * M_1_PI_F / (grid.radius_mm * grid.radius_mm));
+    if (map == STOKES_MAP_SURFACE) radiance *= spectra[point.material];
+    film[map * count + point.pixel] += film_value(radiance, pass);
+}

@@ -1,0 +1,24 @@
+// What the camera sees, between finding it and gathering its photons.
+#ifndef STOKES_SHARED_GATHER_H
+#define STOKES_SHARED_GATHER_H
+
+#include "limits.h"
+
+// A photon counts towards a point when it is nearer than the radius, its normal is within 60 degrees of the
+// point's, and it is not further from the tangent plane than this fraction of the radius: so no light comes
+// through a thin wall, round an edge or down from a step.
+#define STOKES_GATHER_MIN_COSINE 0.5f
+#define STOKES_GATHER_MAX_HEIGHT 0.25f
+
+// The point that a camera ray sees. Written by collect_points, read by gather_radiance, one per camera ray.
+typedef struct GatherPoint {
+    float x, y, z;          // [mm]
+    unsigned int pixel;     // y * width + x
+    float nx, ny, nz;       // outward geometric normal, unit length
+    unsigned int material;  // index into the MaterialRecord buffer
+    unsigned int maps;      // bit STOKES_MAP_*: photons of this map count; 0: nothing to gather
+    unsigned int pad0, pad1, pad2;
+} GatherPoint;
+STOKES_ASSERT_SIZE(GatherPoint, 48);
+
+#endif

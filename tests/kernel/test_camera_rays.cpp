@@ -1,0 +1,137 @@
+#include <cmath>
+#include <limits>
+
+#include "host/render/camera_view.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/device_fixture.hpp"
+
+using namespace stokes;
+
+namespace {
+
+struct alignas(8) Uint2 {
+    std::uint32_t x, y;
+};
+
+std::vector<Uint2> pixels_of_rays(std::uint32_t width, std::uint32_t height) {
+    const Buffer<Uint2> pixels(test_device(), "pixels", std::size_t{width} * height);
+    test_program("tiles.cl").kernel("pixels_of_rays").launch(pixels.size(), width, height, pixels);
+    return pixels.download();
+}
+
+Camera test_camera() {
+    Camera camera;
+    camera.position_mm = {10.0, 20.0, -5.0};
+    camera.target_mm = {-4.0, 3.0, 30.0};
+    camera.up = {0.1, 1.0, 0.0};
+    camera.vertical_fov_deg = 50.0;
+    return camera;
+}
+
+std::vector<Ray> rays_of_pass(const CameraRecord& record, std::uint32_t pass_index) {
+    CameraView view(test_device(), record);
+    PassConstants pass{};
+    pass.seed = 11;
+    pass.pass = pass_index;
+    const Buffer<PassConstants> constants(test_device(), "pass", std::vector<PassConstants>{pass});
+    const Buffer<Ray> rays(test_device(), "rays", view.ray_count());
+    view.make_rays(constants, rays);
+    return rays.download();
+}
+
+// Where a ray crosses the film, in pixels from the top left corner, by plain projection.
+glm::dvec2 film_point(const Camera& camera, int width, int height, const Ray& ray) {
+    const glm::dvec3 forward = glm::normalize(camera.target_mm - camera.position_mm);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+    const glm::dvec3 d(ray.dx, ray.dy, ray.dz);
+    const double scale =
+        0.5 * height / std::tan(glm::radians(0.5 * camera.vertical_fov_deg)) / glm::dot(d, forward);
+    return {0.5 * width + glm::dot(d, right) * scale, 0.5 * height - glm::dot(d, up) * scale};
+}
+
+}  // namespace
+
+TEST_CASE("tiles hand every pixel to exactly one ray", "[camera][tiny]") {
+    const Uint2 sizes[] = {{1, 1}, {7, 3}, {8, 8}, {17, 9}, {13, 64}, {1, 30}, {30, 1}, {65, 41}};
+    for (const Uint2 size : sizes) {
+        std::vector<int> seen(size.x * size.y, 0);
+        for (const Uint2 pixel : pixels_of_rays(size.x, size.y)) {
+            REQUIRE(pixel.x < size.x);
+            REQUIRE(pixel.y < size.y);
+            ++seen[pixel.y * size.x + pixel.x];
+        }
+        CHECK(seen == std::vector<int>(seen.size(), 1));
+    }
+}
+
+TEST_CASE("64 rays in a row see a tile of 8 x 8 pixels", "[camera][tiny]") {
+    const std::vector<Uint2> pixels = pixels_of_rays(40, 19);
+    for (std::uint32_t i = 0; i < 40 * 16; ++i) {
+        CHECK(pixels[i].x / 8 == i / 64 % 5);
+        CHECK(pixels[i].y / 8 == i / 64 / 5);
+    }
+}
+
+// Rays are single precision: a direction is right to 1e-7, a film point to 1e-4 of a pixel here.
+TEST_CASE("each ray has unit length and goes through its own pixel", "[camera][tiny]") {
+    const int width = 37, height = 21;
+    const Camera camera = test_camera();
+    const std::vector<Ray> rays = rays_of_pass(make_camera_record(camera, width, height), 0);
+    const std::vector<Uint2> pixels = pixels_of_rays(width, height);
+    double mean_x = 0.0, mean_y = 0.0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Ray& ray = rays[i];
+        REQUIRE(ray.ox == 10.0f);
+        REQUIRE(ray.oy == 20.0f);
+        REQUIRE(ray.oz == -5.0f);
+        REQUIRE(ray.t_min == 0.0f);
+        REQUIRE(ray.t_max == std::numeric_limits<float>::infinity());
+        REQUIRE(glm::length(glm::dvec3(ray.dx, ray.dy, ray.dz)) == Approx(1.0).epsilon(1e-6));
+        const glm::dvec2 offset =
+            film_point(camera, width, height, ray) - glm::dvec2(pixels[i].x, pixels[i].y);
+        REQUIRE(offset.x > -1e-4);
+        REQUIRE(offset.x < 1.0 + 1e-4);
+        REQUIRE(offset.y > -1e-4);
+        REQUIRE(offset.y < 1.0 + 1e-4);
+        mean_x += offset.x / static_cast<double>(rays.size());
+        mean_y += offset.y / static_cast<double>(rays.size());
+    }
+    // The mean of 777 uniforms is 0.5 with a standard error of 0.0104; four of them either side.
+    CHECK(std::abs(mean_x - 0.5) < 0.042);
+    CHECK(std::abs(mean_y - 0.5) < 0.042);
+}
+
+TEST_CASE("passes jitter differently", "[camera][tiny]") {
+    const CameraRecord record = make_camera_record(test_camera(), 5, 4);
+    const std::vector<Ray> first = rays_of_pass(record, 0), second = rays_of_pass(record, 1);
+    for (std::size_t i = 0; i < first.size(); ++i) CHECK(first[i].dx != second[i].dx);
+}
+
+// 90 degrees: the middles of the top and bottom edges lie 45 degrees off the axis.
+TEST_CASE("the field of view spans the height of the picture", "[camera]") {
+    Camera camera;
+    camera.position_mm = {0.0, 0.0, 0.0};
+    camera.target_mm = {0.0, 0.0, -7.0};
+    camera.up = {0.0, 3.0, 0.0};
+    camera.vertical_fov_deg = 90.0;
+    const CameraRecord record = make_camera_record(camera, 400, 200);
+    CHECK(record.corner_x == Approx(-2.0));
+    CHECK(record.corner_y == Approx(1.0));
+    CHECK(record.corner_z == Approx(-1.0));
+    CHECK(record.corner_x + 400 * record.right_x == Approx(2.0));
+    CHECK(record.corner_y + 200 * record.down_y == Approx(-1.0));
+}
+
+TEST_CASE("a camera that cannot look is refused", "[camera]") {
+    Camera camera = test_camera();
+    CHECK_THROWS_AS(make_camera_record(camera, 0, 10), InputError);
+    CHECK_THROWS_AS(make_camera_record(camera, 65536, 65536), InputError);
+    camera.up = camera.target_mm - camera.position_mm;
+    CHECK_THROWS_AS(make_camera_record(camera, 10, 10), InputError);
+    camera = test_camera();
+    camera.target_mm = camera.position_mm;
+    CHECK_THROWS_AS(make_camera_record(camera, 10, 10), InputError);
+    camera = test_camera();
+    camera.vertical_fov_deg = 180.0;
+    CHECK_THROWS_AS(make_camera_record(camera, 10, 10), InputError);
+}
