@@ -1,0 +1,68 @@
+#include "tests/support/triangle_meshes.hpp"
+
+#include <cmath>
+#include <random>
+
+namespace stokes {
+
+Triangle make_triangle(const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2, std::uint32_t body) {
+    const glm::vec3 e1 = v1 - v0, e2 = v2 - v0;
+    return {v0.x, v0.y, v0.z, 0, e1.x, e1.y, e1.z, body, e2.x, e2.y, e2.z, 0};
+}
+
+std::vector<Triangle> sphere_mesh(int rings, int segments, float radius_mm, const glm::vec3& centre_mm,
+                                  std::uint32_t body) {
+    const auto vertex = [&](int ring, int segment) {
+        const double pi = std::acos(-1.0);
+        const double theta = pi * ring / rings;
+        const double phi = 2.0 * pi * (segment % segments) / segments;
+        const double s = ring == 0 || ring == rings ? 0.0 : std::sin(theta);
+        return centre_mm + radius_mm * glm::vec3(s * std::cos(phi), std::cos(theta), -s * std::sin(phi));
+    };
+    std::vector<Triangle> triangles;
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < segments; ++j) {
+            const glm::vec3 a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1),
+                            d = vertex(i, j + 1);
+            if (i + 1 < rings) triangles.push_back(make_triangle(a, b, c, body));
+            if (i > 0) triangles.push_back(make_triangle(a, c, d, body));
+        }
+    return triangles;
+}
+
+std::vector<Triangle> box_mesh(const glm::vec3& lo, const glm::vec3& hi, std::uint32_t body) {
+    const auto corner = [&](int i) {
+        return glm::vec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
+    };
+    const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    std::vector<Triangle> triangles;
+    for (const auto& f : faces) {
+        triangles.push_back(make_triangle(corner(f[0]), corner(f[1]), corner(f[2]), body));
+        triangles.push_back(make_triangle(corner(f[0]), corner(f[2]), corner(f[3]), body));
+    }
+    return triangles;
+}
+
+std::vector<Triangle> triangle_soup(int count, float size_mm, const glm::vec3& stretch, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    const auto point = [&] {
+        const float x = unit(random), y = unit(random), z = unit(random);
+        return glm::vec3(x, y, z);
+    };
+    std::vector<Triangle> triangles;
+    for (int i = 0; i < count; ++i) {
+        const glm::vec3 centre = 100.0f * point();
+        glm::vec3 v[3];
+        for (glm::vec3& corner : v) corner = centre + size_mm * stretch * (2.0f * point() - 1.0f);
+        triangles.push_back(make_triangle(v[0], v[1], v[2]));
+    }
+    return triangles;
+}
+
+void append(std::vector<Triangle>& all, const std::vector<Triangle>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace stokes
