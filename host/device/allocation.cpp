@@ -51,7 +51,9 @@ Allocation::Allocation(const Device& device, const std::string& name, std::size_
     shared.memory_in_use += bytes;
 }
 
+// Kernels that are still under way may use the memory.
 Allocation::Owner::~Owner() {
+    if (bytes > 0) ::clFinish(device.queue()());
     buffer = cl::Buffer();
     std::free(host);
     if (bytes > 0) device.shared_->memory_in_use -= bytes;

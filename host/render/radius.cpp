@@ -10,8 +10,8 @@ namespace stokes {
 
 namespace {
 
-// Enough for a smooth first pass, few enough to keep the shadow edges of a preview.
-constexpr double photons_per_disk = 10.0;
+// Few, because the noise of the wavelengths outweighs that of the positions: a preview keeps its shadow edges.
+constexpr double photons_per_disk = 3.0;
 
 // Edge of the tiles in which photons are counted [pixels].
 constexpr std::uint32_t tile_edge = 16;
@@ -43,7 +43,7 @@ double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint
     const glm::dvec3 corner(camera.corner_x, camera.corner_y, camera.corner_z);
     const glm::dvec3 right(camera.right_x, camera.right_y, camera.right_z);
     const glm::dvec3 down(camera.down_x, camera.down_y, camera.down_z);
-    const glm::dvec3 axis = glm::normalize(glm::cross(down, right));
+    const glm::dvec3 axis = glm::normalize(glm::cross(right, down));
     const double pixel_area = glm::length(right) * glm::length(down);  // at distance 1 along the axis
     for (const GatherPoint& p : points) {
         if (p.maps == 0) continue;
