@@ -1,7 +1,7 @@
 // Significance of what samplers and estimators give.
 //
-// A test fixes its seeds, states how many comparisons it makes and how often all of them together may be wrong by
-// chance, and compares each p-value with sidak_level().
+// A test fixes its seeds, states how many comparisons it makes and how often all of them together may be
+// wrong by chance, and compares each p-value with sidak_level().
 #pragma once
 
 #include <cmath>
@@ -18,8 +18,8 @@ inline double sidak_level(double family_level, std::size_t comparisons) {
 }
 
 // Probability that a chi-square variable with that many degrees of freedom exceeds the value: the regularised
-// upper incomplete gamma function Q(freedom / 2, value / 2), by its series or its continued fraction (Abramowitz
-// and Stegun 6.5.29 and 6.5.31).
+// upper incomplete gamma function Q(freedom / 2, value / 2), by its series or its continued fraction
+// (Abramowitz and Stegun 6.5.29 and 6.5.31).
 inline double chi_square_tail(double value, double freedom) {
     const double a = 0.5 * freedom, x = 0.5 * value;
     if (!(x > 0.0)) return 1.0;
@@ -43,10 +43,13 @@ inline double chi_square_tail(double value, double freedom) {
 }
 
 // Probability that a standard normal variable lies further from 0 than z.
-inline double normal_two_sided(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
+inline double normal_two_sided(double z) {
+    return std::erfc(std::abs(z) / std::sqrt(2.0));
+}
 
-// p-value of Pearson's test of counts against expected counts. Neighbouring cells are merged until each expects at
-// least 5; constraints: degrees of freedom lost, 1 for a fixed total. NaN when fewer than two cells remain.
+// p-value of Pearson's test of counts against expected counts. Neighbouring cells are merged until each
+// expects at least 5; constraints: degrees of freedom lost, 1 for a fixed total. NaN when fewer than two
+// cells remain.
 inline double chi_square_p_value(const std::vector<double>& observed, const std::vector<double>& expected,
                                  double constraints = 1.0) {
     std::vector<double> counts{0.0}, means{0.0};

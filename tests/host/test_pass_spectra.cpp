@@ -1,0 +1,152 @@
+#include <cmath>
+#include <cstring>
+
+#include "host/core/error.hpp"
+#include "host/image/colour.hpp"
+#include "host/render/pass_spectra.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/statistics.hpp"
+
+using namespace stokes;
+
+namespace {
+
+Spectrum ramp(double at_300, double at_780) {
+    return {{300.0, 780.0}, {at_300, at_780}, Outside::zero};
+}
+
+// A surface light, a beam and a dark lamp; two materials and a fluorophore.
+Scene spectral_scene() {
+    Scene scene;
+    scene.file = "spectra.json";
+    scene.render.seed = 5;
+    Light surface, beam, dark;
+    surface.flux = ramp(1.0, 3.0);
+    beam.kind = LightKind::beam;
+    beam.flux = ramp(0.5, 0.0);
+    dark.flux = Spectrum::constant(0.0);
+    scene.lights = {surface, beam, dark};
+    Material grey, red;
+    grey.reflectance = Spectrum::constant(0.5);
+    red.reflectance = ramp(0.0, 0.9);
+    scene.materials = {grey, red};
+    Fluorophore dye;
+    dye.excitation = ramp(1.0, 0.0);
+    dye.emission = ramp(0.0, 1.0);
+    scene.fluorophores = {dye};
+    return scene;
+}
+
+const std::vector<double> area_mm2 = {25.0, 0.0, 4.0};
+
+}  // namespace
+
+// Powers by the sum over 300..780 nm of the ramps: mean of the ends times 481.
+TEST_CASE("lights are chosen in proportion to their power", "[pass_spectra]") {
+    const std::vector<double> p = light_probabilities(spectral_scene());
+    REQUIRE(p.size() == 3);
+    CHECK(p[0] == Approx(2.0 / 2.25).epsilon(1e-12));
+    CHECK(p[1] == Approx(0.25 / 2.25).epsilon(1e-12));
+    CHECK(p[2] == 0.0);
+}
+
+TEST_CASE("a scene whose lights are dark in the rendered range is refused", "[pass_spectra]") {
+    Scene scene = spectral_scene();
+    for (Light& light : scene.lights) light.flux = {{200.0, 250.0}, {1.0, 1.0}, Outside::zero};
+    CHECK_THROWS_AS(light_probabilities(scene), InputError);
+    scene.lights.clear();
+    CHECK_THROWS_AS(light_probabilities(scene), InputError);
+}
+
+TEST_CASE("the photons of a light carry its flux in the mean", "[pass_spectra]") {
+    const Scene scene = spectral_scene();
+    const std::vector<double> p = light_probabilities(scene);
+    constexpr std::uint32_t photons = 10000;
+    const PassSpectra pass = make_pass_spectra(scene, p, area_mm2, 3, photons, 0.25);
+    const WavelengthSet set = draw_wavelengths(5, 3, 300, 780);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        for (std::size_t k = 0; k < set.size(); ++k) {
+            const double flux = scene.lights[i].flux.at(set[k]);
+            CHECK(static_cast<double>(pass.photon_flux[i].v[k]) * p[i] * photons ==
+                  Approx(flux).epsilon(1e-6));
+        }
+}
+
+// A diffuse emitter of flux Phi and area A has radiance Phi / (pi A); nobody looks into a beam.
+TEST_CASE("the radiance of an emitter is its flux over pi and its area", "[pass_spectra]") {
+    const Scene scene = spectral_scene();
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100, 0.25);
+    for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
+        const double lambda_nm = pass.constants.lambda_nm[k];
+        const double flux = scene.lights[0].flux.at(lambda_nm);
+        CHECK(static_cast<double>(pass.radiance[0].v[k]) == Approx(flux / (M_PI * 25.0)).epsilon(1e-6));
+        CHECK(pass.radiance[1].v[k] == 0.0f);
+        CHECK(pass.radiance[2].v[k] == 0.0f);
+    }
+}
+
+TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
+    Scene scene = spectral_scene();
+    scene.fluorophores.push_back(scene.fluorophores.front());
+    scene.fluorophores.back().conversion = 0.05;
+    const SpectraLayout layout(scene);
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 1, 100, 0.25);
+    REQUIRE(pass.rows.size() == layout.row_count());
+    const WavelengthSet set = draw_wavelengths(5, 1, 300, 780);
+    const auto value = [&](std::uint32_t row, std::size_t k) {
+        return static_cast<double>(pass.rows[row].v[k]);
+    };
+    for (std::size_t k = 0; k < set.size(); ++k) {
+        CHECK(value(0, k) == 0.5);
+        CHECK(value(1, k) == Approx(scene.materials[1].reflectance.at(set[k])).epsilon(1e-6));
+    }
+    for (int f = 0; f < 2; ++f) {
+        const Fluorophore& dye = scene.fluorophores[static_cast<std::size_t>(f)];
+        const auto expected = reradiation_rows(dye, set, 32.0);
+        for (std::uint32_t ex = 0; ex < STOKES_WAVELENGTHS; ++ex) {
+            CHECK(value(layout.excitation_row(f), ex) == Approx(dye.excitation.at(set[ex])).epsilon(1e-6));
+            CHECK(std::memcmp(&pass.rows[layout.reradiation_row(f) + ex], &expected[ex], sizeof(Flux16)) ==
+                  0);
+        }
+    }
+}
+
+TEST_CASE("the constants of a pass are its own", "[pass_spectra]") {
+    const Scene scene = spectral_scene();
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 12345, 0.25);
+    const WavelengthSet set = draw_wavelengths(5, 3, 300, 780);
+    for (std::size_t k = 0; k < set.size(); ++k)
+        CHECK(pass.constants.lambda_nm[k] == static_cast<float>(set[k]));
+    CHECK(pass.constants.seed == 5);
+    CHECK(pass.constants.pass == 3);
+    CHECK(pass.constants.photons == 12345);
+    CHECK(pass.constants.radius_mm == 0.25f);
+    CHECK(pass.constants.spectral_weight_nm == 481.0f / 16.0f);
+}
+
+// xyz_of() sums over every nanometre of 300..830; light beyond 780 nm is not rendered, so the spectrum ends
+// there. The mean over passes is within 3.5 standard errors, and those are below 0.5 %.
+TEST_CASE("the tristimulus weights of many passes give the colour of a spectrum", "[pass_spectra]") {
+    const Scene scene = spectral_scene();
+    const Spectrum radiance{{380.0, 550.0, 780.0}, {0.2, 1.0, 0.6}, Outside::zero};  // [W m^-2 sr^-1 nm^-1]
+    const std::vector<double> p = light_probabilities(scene);
+    std::array<Sample, 3> xyz;
+    for (std::uint32_t pass = 0; pass < 20000; ++pass) {
+        const PassConstants c = make_pass_spectra(scene, p, area_mm2, pass, 1, 1.0).constants;
+        std::array<double, 3> sum{};
+        for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
+            const double per_mm2 = 1e-6 * radiance.at(c.lambda_nm[k]);
+            sum[0] += static_cast<double>(c.to_x[k]) * per_mm2;
+            sum[1] += static_cast<double>(c.to_y[k]) * per_mm2;
+            sum[2] += static_cast<double>(c.to_z[k]) * per_mm2;
+        }
+        for (std::size_t k = 0; k < 3; ++k) xyz[k].add(sum[k]);
+    }
+    const glm::dvec3 expected = xyz_of(radiance);
+    for (int k = 0; k < 3; ++k) {
+        const Sample& sample = xyz[static_cast<std::size_t>(k)];
+        CAPTURE(k, expected[k], sample.mean());
+        CHECK(sample.standard_error() < 0.005 * expected[k]);
+        CHECK(std::abs(sample.z(expected[k])) < 3.5);
+    }
+}

@@ -1,0 +1,106 @@
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "host/core/error.hpp"
+#include "host/render/stats.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace stokes;
+
+namespace {
+
+RenderStats example() {
+    RenderStats stats;
+    stats.scene = "scenes/prisms.json";
+    stats.device = "pthread-cpu";
+    stats.driver = "3.1";
+    stats.passes = 12;
+    stats.seed = 4000000000u;
+    stats.width = 640;
+    stats.height = 360;
+    stats.wall_s = 2.5;
+    stats.photons_emitted = 12000000000ull;  // beyond 32 bits
+    stats.rays_traced = 50;
+    stats.deposits = 7;
+    stats.stages = {{"emit_photons", 0.125}, {"trace_closest", 1.0 / 3.0}};
+    stats.dropped = {{"missed_exit", 3}, {"map_full", 0}};
+    stats.ledger.emitted = 2.0;
+    stats.ledger.absorbed = 1.5;
+    stats.ledger.stokes_loss = 0.25;
+    stats.ledger.escaped = 0.125;
+    stats.ledger.dropped = 0.0625;
+    stats.ledger.roulette = 0.0625;
+    stats.ledger.stored = 9.0;
+    stats.radius_first_mm = 0.1;
+    stats.radius_last_mm = 1e-7;
+    return stats;
+}
+
+nlohmann::json written(const RenderStats& stats) {
+    const TemporaryFolder folder;
+    write_stats(stats, folder.file("stats.json"));
+    return nlohmann::json::parse(file_content(folder.file("stats.json")));
+}
+
+}  // namespace
+
+TEST_CASE("the statistics hold every figure under its name", "[stats]") {
+    const nlohmann::json json = written(example());
+    CHECK(json.at("passes") == 12);
+    CHECK(json.at("seed") == 4000000000u);
+    CHECK(json.at("wall_s") == 2.5);
+    CHECK(json.at("photons_emitted") == 12000000000ull);
+    CHECK(json.at("photons_per_second") == 4.8e9);
+    CHECK(json.at("rays_traced") == 50);
+    CHECK(json.at("rays_per_second") == 20.0);
+    CHECK(json.at("device") == "pthread-cpu");
+    CHECK(json.at("radius_first_mm") == 0.1);
+    CHECK(json.at("radius_last_mm") == 1e-7);
+    CHECK(json.at("stages").size() == 2);
+    CHECK(json.at("stages").at("trace_closest") == 1.0 / 3.0);  // every digit
+    CHECK(json.at("dropped").at("missed_exit") == 3);
+    CHECK(json.at("dropped").at("map_full") == 0);
+    const nlohmann::json& ledger = json.at("ledger");
+    CHECK(ledger.at("emitted") == 2.0);
+    CHECK(ledger.at("absorbed") == 1.5);
+    CHECK(ledger.at("stokes_loss") == 0.25);
+    CHECK(ledger.at("stored") == 9.0);
+    CHECK(ledger.at("escaped") == 0.125);
+    CHECK(ledger.at("imbalance") == 0.0);
+}
+
+TEST_CASE("statistics of nothing are still JSON", "[stats]") {
+    const nlohmann::json json = written(RenderStats{});
+    CHECK(json.at("photons_per_second") == 0.0);
+    CHECK(json.at("stages").empty());
+    CHECK(json.at("dropped").empty());
+}
+
+TEST_CASE("a figure that is not a number is null", "[stats]") {
+    RenderStats stats = example();
+    stats.ledger.emitted = std::numeric_limits<double>::quiet_NaN();
+    stats.stages["broken"] = std::numeric_limits<double>::infinity();
+    const nlohmann::json json = written(stats);
+    CHECK(json.at("ledger").at("emitted").is_null());
+    CHECK(json.at("stages").at("broken").is_null());
+}
+
+TEST_CASE("names come back as they were, whatever they hold", "[stats]") {
+    std::string name = "a \"b\" c\\d/\u00e9\u20ac \x7f";
+    for (char c = 1; c < 0x20; ++c) name += c;
+    RenderStats stats = example();
+    stats.scene = stats.device = stats.driver = name;
+    stats.stages = {{name, 1.0}};
+    stats.dropped = {{name, 1}};
+    const nlohmann::json json = written(stats);
+    for (const char* key : {"scene", "device", "driver"}) CHECK(json.at(key) == name);
+    CHECK(json.at("stages").at(name) == 1.0);
+    CHECK(json.at("dropped").at(name) == 1);
+}
+
+TEST_CASE("statistics that cannot be written are an error and leave nothing", "[stats]") {
+    const TemporaryFolder folder;
+    CHECK_THROWS_AS(write_stats(example(), folder.file("absent/stats.json")), RunError);
+    CHECK(folder.names().empty());
+}
