@@ -1,0 +1,149 @@
+// What the tests of the photon kernels share: buffers from vectors, pass constants, random flux, ledgers.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kernels/shared/pass.h"
+#include "kernels/shared/path.h"
+#include "kernels/shared/photon.h"
+#include "kernels/shared/ray.h"
+#include "tests/support/device_fixture.hpp"
+
+namespace stokes {
+
+template <class T>
+Buffer<T> on_device(const std::vector<T>& data) {
+    return Buffer<T>(test_device(), "test data", data);
+}
+
+inline Buffer<PassConstants> pass_on_device(std::uint32_t seed, std::uint32_t photons = 0,
+                                            float offset_mm = 0.0f) {
+    PassConstants constants{};
+    constants.seed = seed;
+    constants.pass = 2;
+    constants.photons = photons;
+    constants.offset_mm = offset_mm;
+    return on_device(std::vector<PassConstants>{constants});
+}
+
+inline Flux16 constant_flux(float value) {
+    Flux16 flux;
+    for (float& v : flux.v) v = value;
+    return flux;
+}
+
+// Sixteen values, uniform between low and high.
+inline Flux16 random_flux(std::mt19937& generator, double low, double high) {
+    std::uniform_real_distribution<double> uniform(low, high);
+    Flux16 flux;
+    for (float& v : flux.v) v = static_cast<float>(uniform(generator));
+    return flux;
+}
+
+inline double sum_of(const Flux16& flux) {
+    double sum = 0.0;
+    for (const float v : flux.v) sum += static_cast<double>(v);
+    return sum;
+}
+
+inline bool same_bits(const Flux16& a, const Flux16& b) {
+    return std::memcmp(a.v, b.v, sizeof(a.v)) == 0;
+}
+
+inline glm::dvec3 origin_of(const Ray& ray) {
+    return {ray.ox, ray.oy, ray.oz};
+}
+inline glm::dvec3 direction_of(const Ray& ray) {
+    return {ray.dx, ray.dy, ray.dz};
+}
+
+// The account of a path that has just started with this flux.
+inline PathLedger open_ledger(const Flux16& flux) {
+    PathLedger ledger{};
+    ledger.emitted = static_cast<float>(sum_of(flux));
+    ledger.reference_flux = ledger.emitted / 16.0f;
+    ledger.rays = 1;
+    return ledger;
+}
+
+inline std::vector<PathLedger> open_ledgers(const std::vector<Flux16>& flux) {
+    std::vector<PathLedger> ledgers;
+    for (const Flux16& f : flux) ledgers.push_back(open_ledger(f));
+    return ledgers;
+}
+
+// What a ledger leaves unaccounted for, as a share of what was emitted; carried: the path's flux while it is
+// alive.
+inline double imbalance_of(const PathLedger& ledger, const Flux16& carried) {
+    const auto d = [](float x) { return static_cast<double>(x); };
+    const double left = ledger.fate == STOKES_FATE_ALIVE ? sum_of(carried) : 0.0;
+    const double rest = d(ledger.emitted) + d(ledger.created) - d(ledger.absorbed) - d(ledger.stokes_loss) -
+                        d(ledger.escaped) - d(ledger.dropped) - d(ledger.roulette) - left;
+    return rest / d(ledger.emitted);
+}
+
+inline double worst_imbalance(const std::vector<PathLedger>& ledgers, const std::vector<Flux16>& carried) {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < ledgers.size(); ++i)
+        worst = std::max(worst, std::abs(imbalance_of(ledgers[i], carried[i])));
+    return worst;
+}
+
+// A triangle by its corners; the normal is (b - a) x (c - a).
+inline Triangle make_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+                              std::uint32_t shape = 0, std::uint32_t body = 0) {
+    const glm::vec3 e1 = b - a, e2 = c - a;
+    return {a.x, a.y, a.z, shape, e1.x, e1.y, e1.z, body, e2.x, e2.y, e2.z, 0};
+}
+
+inline glm::dvec3 normal_of(const Triangle& t) {
+    return glm::normalize(glm::cross(glm::dvec3(t.e1x, t.e1y, t.e1z), glm::dvec3(t.e2x, t.e2y, t.e2z)));
+}
+
+inline glm::dvec3 point_on(const Triangle& t, double u, double v) {
+    return glm::dvec3(t.v0x, t.v0y, t.v0z) + u * glm::dvec3(t.e1x, t.e1y, t.e1z) +
+           v * glm::dvec3(t.e2x, t.e2y, t.e2z);
+}
+
+// Two unit vectors at right angles to n and to each other, by another construction than the kernels'.
+inline void frame_of(const glm::dvec3& n, glm::dvec3& s, glm::dvec3& t) {
+    const glm::dvec3 a = glm::abs(n);
+    const glm::dvec3 away = a.x < a.y && a.x < a.z ? glm::dvec3(1, 0, 0)
+                            : a.y < a.z            ? glm::dvec3(0, 1, 0)
+                                                   : glm::dvec3(0, 0, 1);
+    s = glm::normalize(glm::cross(n, away));
+    t = glm::cross(n, s);
+}
+
+// The azimuth of d about n in [0, 1).
+inline double azimuth_about(const glm::dvec3& n, const glm::dvec3& d) {
+    glm::dvec3 s, t;
+    frame_of(n, s, t);
+    const double turn = std::atan2(glm::dot(d, t), glm::dot(d, s)) / (2.0 * M_PI);
+    return turn < 0.0 ? turn + 1.0 : turn;
+}
+
+// Counts of cosine-distributed directions about n, in cells of equal probability: mu^2 and azimuth, both
+// uniform.
+class CosineHistogram {
+  public:
+    explicit CosineHistogram(int steps)
+        : steps_(steps), counts_(std::size_t(steps) * std::size_t(steps), 0.0) {}
+    void add(const glm::dvec3& n, const glm::dvec3& d) {
+        const double mu = glm::dot(n, d);
+        const int row = std::min(int(mu * mu * steps_), steps_ - 1);
+        const int column = std::min(int(azimuth_about(n, d) * steps_), steps_ - 1);
+        counts_[std::size_t(row * steps_ + column)] += 1.0;
+    }
+    const std::vector<double>& counts() const { return counts_; }
+
+  private:
+    int steps_;
+    std::vector<double> counts_;
+};
+
+}  // namespace stokes
