@@ -35,11 +35,11 @@ inline uint maps_of(MaterialRecord material) {
 // Reads rays, hits [width * height], triangles, shapes, materials of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
 // Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
-__kernel void collect_points(CameraRecord camera, __global const PassConstants* pass, __global const Ray* rays,
-                             __global const Hit* hits, __global const Triangle* triangles,
-                             __global const ShapeRecord* shapes, __global const MaterialRecord* materials,
-                             __global const float16* emitted, __global GatherPoint* points,
-                             __global float4* film) {
+__kernel void collect_points(CameraRecord camera, __global const PassConstants* pass,
+                             __global const Ray* rays, __global const Hit* hits,
+                             __global const Triangle* triangles, __global const ShapeRecord* shapes,
+                             __global const MaterialRecord* materials, __global const float16* emitted,
+                             __global GatherPoint* points, __global float4* film) {
     const uint i = (uint)get_global_id(0);
     const uint pixels = camera.width * camera.height;
     if (i >= pixels) return;
@@ -71,8 +71,8 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
 
 // Work-items: one per point; launched once per map. L = 1/(pi r^2) * sum over the map's photons of flux / pi
 // (eq. 6 of Kugita et al.), for the surface map times the reflectance.
-// Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row: a material's reflectance),
-// pass (to_x, to_y, to_z). Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
+// Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
+// material i), pass (to_x, to_y, to_z). Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
 __kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, HashGrid grid,
                               __global const uint* cell_starts, __global const float* positions,
                               __global const uint* normals, __global const float16* flux,
@@ -81,8 +81,8 @@ __kernel void gather_radiance(__global const GatherPoint* points, uint count, ui
     const uint i = (uint)get_global_id(0);
     if (i >= count || (points[i].maps & (1u << map)) == 0u) return;
     const GatherPoint point = points[i];
-    const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux, (float3)(point.x, point.y, point.z),
-                                 (float3)(point.nx, point.ny, point.nz));
+    const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux,
+                                 (float3)(point.x, point.y, point.z), (float3)(point.nx, point.ny, point.nz));
     float16 radiance = sum * (M_1_PI_F * M_1_PI_F / (grid.radius_mm * grid.radius_mm));
     if (map == STOKES_MAP_SURFACE) radiance *= spectra[point.material];
     film[map * count + point.pixel] += film_value(radiance, pass);

@@ -15,7 +15,8 @@ __kernel void find_keys(__global const PhotonHead* heads, uint slots, HashGrid g
 
 // Work-items: STOKES_HASH_CHUNKS. Chunk c counts its photons per bucket.
 // Reads keys[slots]. Writes histograms[STOKES_HASH_CHUNKS][STOKES_HASH_BUCKETS].
-__kernel void count_buckets(__global const uint* keys, uint slots, HashGrid grid, __global uint* histograms) {
+__kernel void count_buckets(__global const uint* keys, uint slots, HashGrid grid,
+                            __global uint* histograms) {
     const uint chunk = (uint)get_global_id(0);
     if (chunk >= STOKES_HASH_CHUNKS) return;
     __global uint* counts = histograms + chunk * STOKES_HASH_BUCKETS;
@@ -26,18 +27,20 @@ __kernel void count_buckets(__global const uint* keys, uint slots, HashGrid grid
         if (keys[i] != STOKES_NONE) ++counts[keys[i] >> grid.bucket_shift];
 }
 
-// Work-items: STOKES_HASH_BUCKETS. Each bucket's counts become the number of its photons in earlier chunks.
-// Updates histograms[STOKES_HASH_CHUNKS][STOKES_HASH_BUCKETS]. Writes bucket_starts[1 + bucket] = its photons.
+// Work-items: STOKES_HASH_BUCKETS / 16, a bucket a lane. Each bucket's counts become the number of its
+// photons in earlier chunks. Updates histograms[STOKES_HASH_CHUNKS][STOKES_HASH_BUCKETS].
+// Writes bucket_starts[1 + bucket] = photons of the bucket.
 __kernel void scan_chunks(__global uint* histograms, __global uint* bucket_starts) {
-    const uint bucket = (uint)get_global_id(0);
-    if (bucket >= STOKES_HASH_BUCKETS) return;
-    uint sum = 0u;
+    const uint first = (uint)get_global_id(0) * 16u;
+    if (first >= STOKES_HASH_BUCKETS) return;
+    uint16 sum = 0u;
     for (uint c = 0u; c < STOKES_HASH_CHUNKS; ++c) {
-        const uint count = histograms[c * STOKES_HASH_BUCKETS + bucket];
-        histograms[c * STOKES_HASH_BUCKETS + bucket] = sum;
+        __global uint* counts = histograms + c * STOKES_HASH_BUCKETS + first;
+        const uint16 count = vload16(0, counts);
+        vstore16(sum, 0, counts);
         sum += count;
     }
-    bucket_starts[1u + bucket] = sum;
+    vstore16(sum, 0, bucket_starts + 1u + first);
 }
 
 // Work-items: 1. Counts become starts: bucket_starts[0..STOKES_HASH_BUCKETS], the last one all photons.
@@ -51,8 +54,8 @@ __kernel void scan_buckets(__global uint* bucket_starts) {
     }
 }
 
-// Work-items: STOKES_HASH_CHUNKS. Chunk c writes its photons behind those of earlier chunks, bucket by bucket.
-// Reads keys[slots], bucket_starts. Uses up histograms. Writes entries[photons] = (key, slot).
+// Work-items: STOKES_HASH_CHUNKS. Chunk c writes its photons behind those of earlier chunks, bucket by
+// bucket. Reads keys[slots], bucket_starts. Uses up histograms. Writes entries[photons] = (key, slot).
 __kernel void scatter_slots(__global const uint* keys, uint slots, HashGrid grid,
                             __global const uint* bucket_starts, __global uint* histograms,
                             __global uint2* entries) {
@@ -96,7 +99,8 @@ __kernel void sort_buckets(__global const uint2* entries, __global const uint* b
 
 // Work-items: slots / 16, rounded up. Item i moves photons 16 i .. 16 i + 15 into cell order.
 // Reads heads[slots], flux[slots] [W/nm], order[photons], cell_starts[keys] = photons.
-// Writes positions: x, y and z [3][stride] [mm], normals[photons] (coarse_normals), sorted_flux[photons] [W/nm].
+// Writes positions: x, y and z [3][stride] [mm], normals[photons] (coarse_normals) and sorted_flux[photons]
+// [W/nm].
 __kernel void permute_photons(__global const PhotonHead* heads, __global const float16* flux,
                               __global const uint* order, __global const uint* cell_starts, HashGrid grid,
                               __global float* positions, __global uint* normals,

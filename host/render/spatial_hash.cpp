@@ -105,7 +105,7 @@ void HashBuilder::build(SpatialHash& hash, const Buffer<PhotonHead>& heads, cons
     const HashGrid& grid = hash.grid_;
     find_keys_.launch(slots, heads, slots, grid, keys_);
     count_buckets_.launch(STOKES_HASH_CHUNKS, keys_, slots, grid, histograms_);
-    scan_chunks_.launch(STOKES_HASH_BUCKETS, histograms_, bucket_starts_);
+    scan_chunks_.launch(STOKES_HASH_BUCKETS / 16, histograms_, bucket_starts_);
     scan_buckets_.launch(1, bucket_starts_);
     scatter_slots_.launch(STOKES_HASH_CHUNKS, keys_, slots, grid, bucket_starts_, histograms_, entries_);
     sort_buckets_.launch(STOKES_HASH_BUCKETS, entries_, bucket_starts_, grid, hash.cell_starts_, order_);
