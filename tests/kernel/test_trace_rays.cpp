@@ -1,0 +1,364 @@
+// trace_* against a plain double-precision search over all triangles.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "host/scene/bvh_builder.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/device_fixture.hpp"
+#include "tests/support/triangle_meshes.hpp"
+
+using namespace stokes;
+
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+glm::dvec3 v0_of(const Triangle& t) {
+    return {t.v0x, t.v0y, t.v0z};
+}
+glm::dvec3 e1_of(const Triangle& t) {
+    return {t.e1x, t.e1y, t.e1z};
+}
+glm::dvec3 e2_of(const Triangle& t) {
+    return {t.e2x, t.e2y, t.e2z};
+}
+
+// The scene on the device, with its kernels.
+struct Traced {
+    explicit Traced(const std::vector<Triangle>& scene, const std::vector<std::string>& options = {})
+        : triangles(scene),
+          bvh(build_bvh(scene)),
+          program(test_device(), "trace_rays.cl", options),
+          nodes(test_device(), "nodes", bvh.nodes),
+          blocks(test_device(), "blocks", bvh.blocks),
+          triangle_buffer(test_device(), "triangles", scene) {}
+
+    std::vector<Hit> closest(const std::vector<Ray>& rays) {
+        const Buffer<Ray> in(test_device(), "rays", rays);
+        const Buffer<Hit> out(test_device(), "hits", rays.size());
+        const auto n = static_cast<cl_uint>(rays.size());
+        program.kernel("trace_closest_all").launch(n, n, nodes, blocks, bvh.grid, in, out);
+        return out.download();
+    }
+    std::vector<cl_uint> any(const std::vector<Ray>& rays) {
+        const Buffer<Ray> in(test_device(), "rays", rays);
+        const Buffer<cl_uint> out(test_device(), "occluded", rays.size());
+        const auto n = static_cast<cl_uint>(rays.size());
+        program.kernel("trace_any").launch(n, n, nodes, blocks, bvh.grid, in, out);
+        return out.download();
+    }
+    std::vector<Hit> probe(const std::vector<Probe>& probes) {
+        const Buffer<Probe> in(test_device(), "probes", probes);
+        const Buffer<Hit> out(test_device(), "hits", probes.size());
+        const auto n = static_cast<cl_uint>(probes.size());
+        program.kernel("trace_probe").launch(n, n, nodes, blocks, bvh.grid, triangle_buffer, in, out);
+        return out.download();
+    }
+
+    std::vector<Triangle> triangles;
+    Bvh bvh;
+    Program program;
+    Buffer<BvhNode> nodes;
+    Buffer<BvhBlock> blocks;
+    Buffer<Triangle> triangle_buffer;
+};
+
+Ray make_ray(const glm::vec3& o, const glm::vec3& d, float t_min = 0.0f, float t_max = infinity) {
+    return {o.x, o.y, o.z, t_min, d.x, d.y, d.z, t_max};
+}
+
+std::vector<Ray> random_rays(int count, float lo, float hi, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> where(lo, hi);
+    std::normal_distribution<float> normal;
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) {
+        const float x = where(random), y = where(random), z = where(random);
+        const float dx = normal(random), dy = normal(random), dz = normal(random);
+        rays.push_back(make_ray({x, y, z}, glm::normalize(glm::vec3(dx, dy, dz))));
+    }
+    return rays;
+}
+
+// Moeller and Trumbore 1997 in double precision: t where the line meets the triangle, shrunk by margin in
+// each barycentric coordinate; NaN where it does not.
+double crossing(const Triangle& t, const glm::dvec3& o, const glm::dvec3& d, double margin) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const glm::dvec3 p = glm::cross(d, e2_of(t));
+    const double det = glm::dot(e1_of(t), p);
+    if (std::fabs(det) < 1e-4 * glm::length(e1_of(t)) * glm::length(e2_of(t)) || det == 0.0) return nan;
+    const glm::dvec3 s = (o - v0_of(t)) / det, q = glm::cross(s, e1_of(t));
+    const double u = glm::dot(s, p), v = glm::dot(d, q);
+    if (u < margin || v < margin || u + v > 1.0 - margin) return nan;
+    return glm::dot(e2_of(t), q);
+}
+
+// Nothing that lies clearly on the segment, and clearly within a triangle, is nearer than the hit; and the
+// hit is on the ray and on its triangle. tolerance_mm: rounding of coordinates.
+int count_wrong(const std::vector<Triangle>& triangles, const std::vector<Ray>& rays,
+                const std::vector<Hit>& hits, double tolerance_mm) {
+    int wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Ray& r = rays[i];
+        const glm::dvec3 o(r.ox, r.oy, r.oz), d(r.dx, r.dy, r.dz);
+        const bool found = hits[i].triangle != STOKES_NONE;
+        const double t = found ? hits[i].t : infinity;
+        bool good = true;
+        for (const Triangle& triangle : triangles) {
+            const double nearer = crossing(triangle, o, d, 1e-3);
+            if (nearer > r.t_min + tolerance_mm && nearer < r.t_max - tolerance_mm &&
+                nearer < t - tolerance_mm)
+                good = false;
+        }
+        if (found) {
+            const Triangle& at = triangles.at(hits[i].triangle);
+            const glm::dvec3 point =
+                v0_of(at) + double(hits[i].u) * e1_of(at) + double(hits[i].v) * e2_of(at);
+            good = good && glm::length(o + t * d - point) < tolerance_mm && hits[i].u >= 0.0f &&
+                   hits[i].v >= 0.0f && hits[i].u + hits[i].v <= 1.0f + 1e-6f && hits[i].t >= r.t_min &&
+                   hits[i].t <= r.t_max;
+        }
+        wrong += !good;
+    }
+    return wrong;
+}
+
+std::size_t count_hits(const std::vector<Hit>& hits) {
+    return static_cast<std::size_t>(
+        std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.triangle != STOKES_NONE; }));
+}
+
+bool same_bits(const std::vector<Hit>& a, const std::vector<Hit>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Hit)) == 0;
+}
+
+// A fifth of the rays keeps one direction component, another fifth loses two.
+void flatten_directions(std::vector<Ray>& rays) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        glm::vec3 d(rays[i].dx, rays[i].dy, rays[i].dz);
+        const auto axis = static_cast<int>(i % 3);
+        if (i % 5 == 0) d = glm::vec3(0.0f), d[axis] = i % 2 ? 1.0f : -1.0f;
+        if (i % 5 == 1) d[axis] = i % 2 ? 0.0f : -0.0f, d = glm::normalize(d);
+        rays[i].dx = d.x, rays[i].dy = d.y, rays[i].dz = d.z;
+    }
+}
+
+}  // namespace
+
+TEST_CASE("nearest hits agree with a double-precision search over soups, needles and plates") {
+    const glm::vec3 shapes[] = {glm::vec3(1.0f), {10.0f, 0.002f, 0.002f}, {5.0f, 5.0f, 1e-5f}};
+    for (const glm::vec3& stretch : shapes) {
+        Traced scene(triangle_soup(2000, 4.0f, stretch, 11));
+        auto rays = random_rays(3000, -20.0f, 120.0f, 12);
+        flatten_directions(rays);
+        const auto hits = scene.closest(rays);
+        CHECK(count_wrong(scene.triangles, rays, hits, 2e-4) == 0);
+        if (stretch.y > 0.01f) CHECK(count_hits(hits) > 300);
+    }
+}
+
+TEST_CASE("rays in and along the planes of boxes find what a double-precision search finds") {
+    std::vector<Triangle> boxes;
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+            for (int k = 0; k < 3; ++k) {
+                const glm::vec3 lo(10.0f * glm::vec3(i, j, k));
+                append(boxes, box_mesh(lo, lo + glm::vec3(5.0f, 10.0f, 7.0f)));
+            }
+    Traced scene(boxes);
+    auto rays = random_rays(3000, -5.0f, 65.0f, 13);
+    for (Ray& r : rays)
+        r.ox = 5.0f * std::round(r.ox / 5.0f), r.oz = std::round(r.oz);  // on faces and their planes
+    flatten_directions(rays);
+    const auto hits = scene.closest(rays);
+    CHECK(count_wrong(scene.triangles, rays, hits, 1e-4) == 0);
+    for (const Hit& hit : hits) CHECK_FALSE((std::isnan(hit.t) || std::isnan(hit.u) || std::isnan(hit.v)));
+}
+
+TEST_CASE("segments: nearest and any hit agree, and respect both ends") {
+    Traced scene(triangle_soup(3000, 4.0f, glm::vec3(1.0f), 14));
+    auto rays = random_rays(20000, -10.0f, 110.0f, 15);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        rays[i].t_min = static_cast<float>(i % 7) * 3.0f - 6.0f;
+        rays[i].t_max = rays[i].t_min + static_cast<float>(i % 11) * 6.0f;
+    }
+    const auto hits = scene.closest(rays);
+    const auto occluded = scene.any(rays);
+    int differ = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        differ += occluded[i] != (hits[i].triangle != STOKES_NONE ? 1u : 0u);
+    CHECK(differ == 0);
+    CHECK(count_hits(hits) > 2000);
+    rays.resize(2000);
+    CHECK(count_wrong(scene.triangles, rays, scene.closest(rays), 2e-4) == 0);
+}
+
+TEST_CASE("no ray leaves a closed mesh, not even through edges and vertices") {
+    const glm::vec3 centre(3.0f, -7.0f, 31.0f);
+    Traced scene(sphere_mesh(48, 96, 10.0f, centre));
+    auto rays = random_rays(100000, -3.0f, 3.0f, 16);
+    std::mt19937 random(17);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        rays[i].ox += centre.x, rays[i].oy += centre.y, rays[i].oz += centre.z;
+        if (i % 2 == 0) continue;
+        // Aimed at a point of an edge; every fourth at a vertex.
+        const Triangle& t = scene.triangles[random() % scene.triangles.size()];
+        const float along = i % 4 == 1 ? 0.0f : static_cast<float>(random() % 1000) / 1000.0f;
+        const glm::dvec3 target = v0_of(t) + double(along) * e1_of(t);
+        const glm::vec3 d(glm::normalize(target - glm::dvec3(rays[i].ox, rays[i].oy, rays[i].oz)));
+        rays[i].dx = d.x, rays[i].dy = d.y, rays[i].dz = d.z;
+    }
+    const auto hits = scene.closest(rays);
+    CHECK(count_hits(hits) == rays.size());
+    const auto occluded = scene.any(rays);
+    CHECK(std::accumulate(occluded.begin(), occluded.end(), 0u) == rays.size());
+}
+
+TEST_CASE("a far camera and a scene far from the origin lose no hits") {
+    const glm::vec3 centre(20000.0f, 0.0f, -5000.0f);
+    Traced scene(sphere_mesh(40, 80, 50.0f, centre));
+    auto rays = random_rays(5000, -20.0f, 20.0f, 18);
+    for (Ray& r : rays) {  // from 1e5 mm away to a point within the sphere
+        const glm::vec3 target = centre + glm::vec3(r.ox, r.oy, r.oz), d(r.dx, r.dy, r.dz);
+        const glm::vec3 origin = target - 1e5f * d;
+        r.ox = origin.x, r.oy = origin.y, r.oz = origin.z;
+    }
+    CHECK(count_hits(scene.closest(rays)) == rays.size());
+}
+
+TEST_CASE("equal distances go to the lower triangle index, wherever the triangles lie in the hierarchy") {
+    const auto once = sphere_mesh(12, 24, 10.0f, glm::vec3(0.0f));
+    std::vector<Triangle> thrice = once;
+    append(thrice, once);
+    append(thrice, once);
+    Traced scene(thrice);
+    const auto rays = random_rays(5000, -4.0f, 4.0f, 19);
+    const auto hits = scene.closest(rays);
+    CHECK(same_bits(hits, Traced(once).closest(rays)));
+    CHECK(std::all_of(hits.begin(), hits.end(), [&](const Hit& h) { return h.triangle < once.size(); }));
+}
+
+TEST_CASE("empty scenes, single triangles, degenerate triangles and untraced rays") {
+    const Ray down = make_ray({0.2f, 1.0f, 0.2f}, {0.0f, -1.0f, 0.0f});
+    CHECK(Traced({}).closest({down})[0].triangle == STOKES_NONE);
+    CHECK(Traced({}).any({down})[0] == 0);
+
+    const Triangle floor = make_triangle({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f});
+    Traced one({floor});
+    const Hit hit = one.closest({down})[0];
+    CHECK(hit.triangle == 0);
+    CHECK(hit.t == 1.0f);
+    CHECK(hit.u == Approx(0.2));  // of v1
+    CHECK(hit.v == Approx(0.2));  // of v2
+    Ray ray = down;
+    ray.t_max = 1.0f;
+    CHECK(one.closest({ray})[0].triangle == 0);
+    ray.t_max = 0.999f;
+    CHECK(one.closest({ray})[0].triangle == STOKES_NONE);
+    ray.t_max = -1.0f;
+    CHECK(one.closest({ray})[0].triangle == STOKES_NONE);
+    CHECK(one.any({ray})[0] == 0);
+    ray = down, ray.t_min = 1.001f;
+    CHECK(one.closest({ray})[0].triangle == STOKES_NONE);
+    ray = down, ray.oy = -1.0f, ray.t_min = -1.5f, ray.t_max = 0.0f;
+    CHECK(one.closest({ray})[0].t == -1.0f);
+
+    const glm::vec3 p(0.2f, 0.0f, 0.2f);
+    std::vector<Triangle> degenerate(20, make_triangle(p, p, p));
+    degenerate.push_back(make_triangle(p, p, p + glm::vec3(1.0f, 0.0f, 0.0f)));
+    degenerate.push_back(floor);
+    CHECK(Traced(degenerate).closest({down})[0].triangle == 21);
+}
+
+TEST_CASE("a list traces its rays and leaves the others' hits alone") {
+    Traced scene(triangle_soup(500, 10.0f, glm::vec3(1.0f), 20));
+    const auto rays = random_rays(300, 0.0f, 100.0f, 21);
+    const std::vector<cl_uint> list{7, 299, 0, 41};
+    const Buffer<cl_uint> indices(test_device(), "list", list);
+    const Buffer<Ray> in(test_device(), "rays", rays);
+    const Hit untouched{-5.0f, -5.0f, -5.0f, 12345u};
+    const Buffer<Hit> out(test_device(), "hits", std::vector<Hit>(rays.size(), untouched));
+    scene.program.kernel("trace_closest")
+        .launch(list.size(), indices, static_cast<cl_uint>(list.size()), scene.nodes, scene.blocks,
+                scene.bvh.grid, in, out);
+    std::vector<Hit> expected(rays.size(), untouched);
+    const auto all = scene.closest(rays);
+    for (const cl_uint i : list) expected[i] = all[i];
+    CHECK(same_bits(out.download(), expected));
+}
+
+TEST_CASE("the same bits for two work-group sizes, with and without the processor's own instructions") {
+    const auto triangles = sphere_mesh(48, 96, 40.0f, glm::vec3(50.0f));
+    const auto rays = random_rays(20000, 0.0f, 100.0f, 22);
+    Traced scene(triangles);
+    const auto hits = scene.closest(rays);
+    const std::size_t usual = test_device().local_size();
+    test_device().set_local_size(16);
+    const auto in_sixteens = scene.closest(rays);
+    test_device().set_local_size(usual);
+    CHECK(same_bits(hits, in_sixteens));
+    Traced portable(triangles, {"-DSTOKES_BVH_PORTABLE"});
+    CHECK(same_bits(hits, portable.closest(rays)));
+    CHECK(scene.any(rays) == portable.any(rays));
+}
+
+TEST_CASE("probes find the nearest surface of their body on their own side") {
+    std::vector<Triangle> triangles = sphere_mesh(30, 60, 10.0f, glm::vec3(0.0f), 0);
+    append(triangles, sphere_mesh(30, 60, 6.0f, glm::vec3(12.0f, 0.0f, 0.0f), 1));
+    append(triangles, box_mesh(glm::vec3(-30.0f, -20.0f, -30.0f), glm::vec3(30.0f, -10.0f, 30.0f), 1));
+    Traced scene(triangles);
+    std::mt19937 random(23);
+    std::vector<Probe> probes;
+    for (const Ray& r : random_rays(4000, -14.0f, 14.0f, 24)) {
+        const float reach = 0.5f + static_cast<float>(random() % 100) / 10.0f;
+        probes.push_back({r.ox, r.oy, r.oz, reach, r.dx, r.dy, r.dz, static_cast<unsigned>(random() % 2)});
+    }
+    const auto hits = scene.probe(probes);
+    int wrong = 0, found = 0, above = 0;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        const Probe& p = probes[i];
+        const glm::dvec3 o(p.x, p.y, p.z), n(p.nx, p.ny, p.nz);
+        double best = infinity;
+        bool too_close = false;  // to an edge or to the reach's end
+        for (const Triangle& t : triangles) {
+            if (t.body != p.body || glm::dot(glm::cross(e1_of(t), e2_of(t)), n) <= 0.0) continue;
+            const double inner = crossing(t, o, -n, 1e-4), outer = crossing(t, o, -n, -1e-4);
+            too_close = too_close || std::fabs(std::fabs(outer) - p.reach_mm) < 1e-3 ||
+                        (std::isnan(inner) && std::fabs(outer) < p.reach_mm);
+            if (std::fabs(inner) < p.reach_mm && std::fabs(inner) < std::fabs(best)) best = inner;
+        }
+        if (too_close) continue;
+        const bool hit = hits[i].triangle != STOKES_NONE;
+        found += hit, above += hit && hits[i].t < 0.0f;
+        wrong += hit != std::isfinite(best);
+        if (hit) wrong += std::fabs(hits[i].t - best) > 1e-3 || triangles.at(hits[i].triangle).body != p.body;
+    }
+    CHECK(wrong == 0);
+    CHECK(found > 500);
+    CHECK(above > 100);
+}
+
+TEST_CASE("probes on a flat surface, past its end, into its back, and not to be traced") {
+    Traced scene(box_mesh(glm::vec3(-10.0f), glm::vec3(10.0f), 3));
+    const auto probe = [](float x, float y, float reach, unsigned body) {
+        return Probe{x, y, 0.3f, reach, 0.0f, 1.0f, 0.0f, body};
+    };
+    const auto hits =
+        scene.probe({probe(1.0f, 10.0f, 0.5f, 3), probe(1.0f, 10.0f, 0.0f, 3), probe(10.5f, 10.0f, 5.0f, 3),
+                     probe(1.0f, 10.4f, 0.5f, 3), probe(1.0f, 9.6f, 0.5f, 3), probe(1.0f, -10.0f, 5.0f, 3),
+                     probe(1.0f, 10.0f, 0.5f, 2), probe(1.0f, 10.0f, -1.0f, 3)});
+    CHECK(hits[0].triangle != STOKES_NONE);
+    CHECK(hits[0].t == Approx(0.0).margin(1e-5));
+    CHECK(hits[1].triangle != STOKES_NONE);
+    CHECK(hits[2].triangle == STOKES_NONE);
+    CHECK(hits[3].t == Approx(0.4).margin(1e-5));   // the surface lies below
+    CHECK(hits[4].t == Approx(-0.4).margin(1e-5));  // above
+    CHECK(hits[4].triangle != STOKES_NONE);
+    CHECK(hits[5].triangle == STOKES_NONE);  // only the back of the bottom is there
+    CHECK(hits[6].triangle == STOKES_NONE);  // another body
+    CHECK(hits[7].triangle == STOKES_NONE);
+}
