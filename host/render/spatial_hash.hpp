@@ -65,7 +65,8 @@ class HashBuilder {
 
   private:
     Device device_;
-    Kernel find_keys_, count_buckets_, scan_chunks_, scan_buckets_, scatter_slots_, sort_buckets_, permute_photons_;
+    Kernel find_keys_, count_buckets_, scan_chunks_, scan_buckets_, scatter_slots_, sort_buckets_,
+        permute_photons_;
     Buffer<std::uint32_t> keys_, histograms_, bucket_starts_, order_;
     Buffer<std::uint64_t> entries_;
 };
