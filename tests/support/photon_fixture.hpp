@@ -83,7 +83,7 @@ inline double imbalance_of(const PathLedger& ledger, const Flux16& carried) {
     const double left = ledger.fate == STOKES_FATE_ALIVE ? sum_of(carried) : 0.0;
     const double rest = d(ledger.emitted) + d(ledger.created) - d(ledger.absorbed) - d(ledger.stokes_loss) -
                         d(ledger.escaped) - d(ledger.dropped) - d(ledger.roulette) - left;
-    return rest / d(ledger.emitted);
+    return ledger.emitted > 0.0f ? rest / d(ledger.emitted) : rest;
 }
 
 inline double worst_imbalance(const std::vector<PathLedger>& ledgers, const std::vector<Flux16>& carried) {
