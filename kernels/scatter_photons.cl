@@ -31,7 +31,7 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
     const float16 reflected = incident * spectra[point.material];
     const float reflected_sum = sum16(reflected);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_SCATTER);
-    const float survival = min(reflected_sum / incident_sum, 1.0f);
+    const float survival = incident_sum > 0.0f ? min(reflected_sum / incident_sum, 1.0f) : 0.0f;
     ledger->absorbed += incident_sum - reflected_sum;
     if (!(draw.a < survival)) {
         ledger->roulette += reflected_sum;
