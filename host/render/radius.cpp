@@ -10,8 +10,8 @@ namespace stokes {
 
 namespace {
 
-// Few, because the noise of the wavelengths outweighs that of the positions: a preview keeps its shadow edges.
-constexpr double photons_per_disk = 3.0;
+// Smooth enough for a preview of some dozen passes, and small beside what a picture shows.
+constexpr double photons_per_disk = 20.0;
 
 // Edge of the tiles in which photons are counted [pixels].
 constexpr std::uint32_t tile_edge = 16;
