@@ -69,14 +69,14 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
 }
 
 // Work-items: count exits. Reads: probes, hits of trace_probe, triangles.
-// Writes: position and normal of exits; r_mm negative where the probe found no surface.
+// Writes: position and normal of exits; r_mm made negative where the probe found no surface.
 __kernel void place_exits(uint count, __global const Probe* probes, __global const Hit* hits,
                           __global const Triangle* triangles, __global ExitPoint* exits) {
     const uint i = (uint)get_global_id(0);
     if (i >= count || probes[i].body == STOKES_NONE) return;
     const Hit hit = hits[i];
     if (hit.triangle == STOKES_NONE) {
-        exits[i].r_mm = -1.0f;
+        exits[i].r_mm = -fmax(exits[i].r_mm, FLT_MIN);
         return;
     }
     __global const Triangle* tri = &triangles[hit.triangle];

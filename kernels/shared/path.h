@@ -60,7 +60,7 @@ STOKES_ASSERT_SIZE(SurfacePoint, 32);
 // One subsurface exit. Written by sample_exits, place_exits and deposit_exits.
 typedef struct ExitPoint {
     float x, y, z;     // on the surface [mm]
-    float r_mm;        // distance from the entry in the tangent plane; negative: no surface was found
+    float r_mm;        // distance from the entry in the tangent plane; negated where no surface was found
     float nx, ny, nz;  // surface normal there, outward, unit length
     float row;         // where the power tables are read: refraction angle [deg]
     unsigned int path;
