@@ -1,8 +1,21 @@
-# Writes OUTPUT, a C++ file that holds FILES (paths below ROOT) as text: stokes::embedded_files().
-# String literals have a length limit in some compilers, so a file is cut into pieces of whole characters.
-set(body "#include \"host/core/embedded.hpp\"\n\nnamespace stokes {\n\nconst std::map<std::string, std::string>& embedded_files() {\n    static const std::map<std::string, std::string> files = {\n")
+# Writes OUTPUT, a C++ file that holds FILES (paths below ROOT): stokes::embedded_files().
+# Text becomes string literals; they have a length limit in some compilers, so a file is cut into pieces of whole
+# characters. Compressed files (*.gz) are taken in by the assembler as they are.
+set(binaries "")
+set(body "    static const std::map<std::string, std::string> files = {\n")
+set(count 0)
 foreach(file IN LISTS FILES)
   file(RELATIVE_PATH name ${ROOT} ${file})
+  if(file MATCHES "\\.gz$")
+    set(symbol "stokes_embedded_${count}")
+    math(EXPR count "${count} + 1")
+    string(APPEND binaries
+      "__asm__(\".section .rodata\\n\"\n        \".global ${symbol}, ${symbol}_end\\n\"\n"
+      "        \"${symbol}:\\n.incbin \\\"${file}\\\"\\n\"\n        \"${symbol}_end:\\n.byte 0\\n.text\\n\");\n"
+      "extern \"C\" const char ${symbol}[], ${symbol}_end[];\n\n")
+    string(APPEND body "        {\"${name}\", std::string(${symbol}, ${symbol}_end)},\n")
+    continue()
+  endif()
   file(READ ${file} text)
   string(APPEND body "        {\"${name}\", std::string()")
   string(LENGTH "${text}" length)
@@ -14,5 +27,6 @@ foreach(file IN LISTS FILES)
   endwhile()
   string(APPEND body "},\n")
 endforeach()
-string(APPEND body "    };\n    return files;\n}\n\n}  // namespace stokes\n")
-file(WRITE ${OUTPUT} "${body}")
+string(APPEND body "    };\n    return files;\n")
+file(WRITE ${OUTPUT} "#include \"host/core/embedded.hpp\"\n\n${binaries}namespace stokes {\n\n"
+  "const std::map<std::string, std::string>& embedded_files() {\n${body}}\n\n}  // namespace stokes\n")

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -7,6 +9,7 @@
 
 #include "host/commands/commands.hpp"
 #include "host/core/error.hpp"
+#include "host/render/green_walk.hpp"
 #include "host/scene/scene_reader.hpp"
 #include "host/subsurface/power_table_json.hpp"
 
@@ -17,7 +20,12 @@ namespace fs = std::filesystem;
 
 struct TablesOptions {
     std::string scene;
-    std::string folder;
+    std::string output;  // a folder; with green, a file
+    bool green = false;
+    double eta = 1.0;
+    std::uint64_t walks = 1000000;
+    std::string device;
+    int threads = 0;
 };
 
 void create_folder(const std::string& folder) {
@@ -52,9 +60,9 @@ void run_tables(const TablesOptions& options) {
                 const MediumSpectra medium{m.name, m.sigma_s, m.sigma_a, m.eta, m.dipole_eta};
                 tables = {make_fluorescence_table(medium), make_single_table(medium),
                           make_multiple_table(medium)};
-                create_folder(options.folder);
+                create_folder(options.output);
             }
-            write_tables(tables, material.name, options.folder);
+            write_tables(tables, material.name, options.output);
             any = true;
         }
     }
@@ -63,16 +71,53 @@ void run_tables(const TablesOptions& options) {
             "{}: no translucent material with subsurface scattering, so no tables to write", options.scene));
 }
 
+// One line that is written over on a terminal, else a line for every tenth.
+void print_share(double share) {
+    static int printed = -1;
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    const int percent = static_cast<int>(100.0 * share) / (terminal ? 1 : 10) * (terminal ? 1 : 10);
+    if (percent == printed) return;
+    printed = percent;
+    fmt::print(stderr, terminal ? "\r{:3d} %{}" : "{:3d} %{}", percent,
+               !terminal || percent == 100 ? "\n" : "");
+    std::fflush(stderr);
+}
+
+void run_green(const TablesOptions& options) {
+    if (!options.scene.empty()) throw InputError("tables: expected a scene or --green, not both");
+    const Device device = Device::open(options.device, options.threads);
+    write_green_table(make_green_table(device, options.eta, options.walks, print_share), options.output);
+    fmt::print("{}\n", options.output);
+}
+
 }  // namespace
 
 void add_tables_command(CLI::App& app) {
     const auto options = std::make_shared<TablesOptions>();
-    CLI::App* command =
-        app.add_subcommand("tables", "Write the photon power tables of a scene's translucent materials");
-    command->add_option("scene", options->scene, "Scene file (JSON)")->required();
-    command->add_option("-o,--output", options->folder, "Folder for the tables; created if it is not there")
+    CLI::App* command = app.add_subcommand("tables",
+                                           "Write the photon power tables of a scene's translucent "
+                                           "materials, or a half-space's Green's function");
+    command->add_option("scene", options->scene, "Scene file (JSON)");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Folder for the tables, created if it is not there; with --green, the file")
         ->required();
-    command->callback([options] { run_tables(*options); });
+    CLI::Option* green = command->add_flag(
+        "--green", options->green, "Compute the Green's function of a half-space by random walks (.json.gz)");
+    command->add_option("--eta", options->eta, "Refractive index, 1 to 4")->needs(green);
+    command->add_option("--walks", options->walks, "Random walks from each depth")->needs(green);
+    command
+        ->add_option("--device", options->device, "OpenCL device: platform:device, part of a name, cpu, gpu")
+        ->needs(green);
+    command->add_option("--threads", options->threads, "CPU threads")->needs(green);
+    command->callback([options] {
+        if (options->green)
+            run_green(*options);
+        else if (options->scene.empty())
+            throw InputError("tables: expected a scene file, or --green");
+        else
+            run_tables(*options);
+    });
 }
 
 }  // namespace stokes

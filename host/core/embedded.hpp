@@ -1,4 +1,4 @@
-// Text files that travel inside the binary: kernels and CIE tables.
+// Files that travel inside the binary: kernels, CIE tables and Green's function tables.
 #pragma once
 
 #include <map>
@@ -6,7 +6,8 @@
 
 namespace stokes {
 
-// Path below the project's root (for example "kernels/lib/rng.clh") -> text. Made at build time.
+// Path below the project's root (for example "kernels/lib/rng.clh") -> content.
+// Made at build time.
 const std::map<std::string, std::string>& embedded_files();
 
 }  // namespace stokes

@@ -1,0 +1,116 @@
+#include "host/render/green_resampler.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/core/error.hpp"
+
+namespace stokes {
+namespace {
+
+constexpr std::size_t kRows = 96, kEntries = 128;
+
+// Stands for the logarithm of nothing.
+constexpr double kLeast = 1e-30;
+
+GreenShape universal_shape(const GreenTable& table) {
+    GreenShape shape{};
+    shape.rho_first = static_cast<float>(table.rho[1]);
+    shape.rho_step = static_cast<float>(octaves_per_node(table.rho));
+    shape.rho_count = static_cast<unsigned>(table.rho.size());
+    shape.z_first = static_cast<float>(table.z[1]);
+    shape.z_step = static_cast<float>(octaves_per_node(table.z));
+    shape.z_count = static_cast<unsigned>(table.z.size());
+    return shape;
+}
+
+// log(H1/a) as [z][rho][albedo]. H1/a has a limit for a = 0, for which the first albedo above stands, and one
+// for rho = 0, for which the first distance does: what reads it scales it by rho.
+std::vector<float> logarithms(const GreenTable& table) {
+    std::vector<float> result;
+    result.reserve(table.h1.size());
+    for (std::size_t z = 0; z < table.z.size(); ++z)
+        for (std::size_t r = 0; r < table.rho.size(); ++r)
+            for (std::size_t i = 0; i < table.albedo.size(); ++i) {
+                const std::size_t a = std::max<std::size_t>(i, 1);
+                const double h = table.h1[table.row(a, z) + std::max<std::size_t>(r, 1)];
+                result.push_back(static_cast<float>(std::log(std::max(h / table.albedo[a], kLeast))));
+            }
+    return result;
+}
+
+}  // namespace
+
+TableShape green_medium_shape(const GreenTable& table, double sigma_t_min, double sigma_t_max,
+                              std::size_t offset) {
+    if (!(sigma_t_min > 0.0 && sigma_t_max >= sigma_t_min && std::isfinite(sigma_t_max)))
+        throw InputError(
+            fmt::format("extinction coefficients from {} to {} per mm: expected positive numbers",
+                        sigma_t_min, sigma_t_max));
+    const auto octaves = [&](const std::vector<double>& axis, std::size_t nodes) {
+        return std::log2(axis.back() / sigma_t_min / (axis[1] / sigma_t_max)) /
+               static_cast<double>(nodes - 2);
+    };
+    TableShape shape{};
+    shape.offset = static_cast<unsigned>(offset);
+    shape.row_count = kRows;
+    shape.row_first = static_cast<float>(table.z[1] / sigma_t_max);
+    shape.row_step = static_cast<float>(octaves(table.z, kRows));
+    shape.r_count = kEntries;
+    shape.r_first = static_cast<float>(table.rho[1] / sigma_t_max);
+    shape.r_step = static_cast<float>(octaves(table.rho, kEntries));
+    shape.log_axes = STOKES_LOG_ROWS | STOKES_LOG_R;
+    return shape;
+}
+
+GreenResampler::GreenResampler(const Device& device, const GreenTable& table)
+    : universal_(universal_shape(table)),
+      totals_(table),
+      log_h_(device, "Green's function, logarithms", logarithms(table)),
+      sigma_t_(device, "extinction coefficients of the pass", STOKES_WAVELENGTHS),
+      fraction_(device, "albedo fractions of the pass", STOKES_WAVELENGTHS),
+      lower_(device, "albedo nodes of the pass", STOKES_WAVELENGTHS),
+      blended_(device, "Green's function of the pass", table.z.size() * table.rho.size()) {
+    for (const double a : table.albedo) root_.push_back(std::sqrt(1.0 - a));
+    const Program program(device, "resample_green.cl");
+    blend_ = program.kernel("blend_green");
+    resample_ = program.kernel("resample_green");
+    normalise_ = program.kernel("normalise_green");
+}
+
+void GreenResampler::resample(const TableShape& shape, std::size_t first_row, const Sixteen& sigma_t,
+                              const Sixteen& albedo, const GreenPassTables& tables) {
+    std::vector<std::uint32_t> lower;
+    std::vector<float> fraction, sigma(sigma_t.begin(), sigma_t.end());
+    for (const double a : albedo) {
+        const double root = std::sqrt(1.0 - a);
+        const auto above = std::lower_bound(root_.begin(), root_.end(), root, std::greater<double>());
+        const auto i = std::clamp<std::ptrdiff_t>(above - root_.begin() - 1, 0,
+                                                  static_cast<std::ptrdiff_t>(root_.size()) - 2);
+        lower.push_back(static_cast<std::uint32_t>(i));
+        fraction.push_back(static_cast<float>((root_[i] - root) / (root_[i] - root_[i + 1])));
+    }
+    std::vector<Flux16> u1(shape.row_count);
+    for (std::size_t row = 0; row < u1.size(); ++row) {
+        const double z_mm =
+            row == 0 ? 0.0
+                     : static_cast<double>(shape.row_first) *
+                           std::exp2(static_cast<double>(row - 1) * static_cast<double>(shape.row_step));
+        for (std::size_t j = 0; j < STOKES_WAVELENGTHS; ++j)
+            u1[row].v[j] =
+                sigma_t[j] > 0.0 ? static_cast<float>(totals_.at(sigma_t[j] * z_mm, albedo[j])) : 0.0f;
+    }
+    lower_.upload(lower);
+    fraction_.upload(fraction);
+    sigma_t_.upload(sigma);
+    tables.u1.upload(u1.data(), u1.size(), first_row);
+    blend_.launch(blended_.size(), universal_, log_h_, lower_, fraction_, blended_);
+    resample_.launch(std::size_t{shape.row_count} * shape.r_count, universal_, shape, blended_, sigma_t_,
+                     tables.table16);
+    normalise_.launch(shape.row_count, shape, static_cast<std::uint32_t>(first_row), tables.u1,
+                      tables.table16, tables.mean_rows, tables.cumulative_rows);
+}
+
+}  // namespace stokes
