@@ -7,6 +7,7 @@
 #include "kernels/shared/bvh.h"
 #include "kernels/shared/camera.h"
 #include "kernels/shared/gather.h"
+#include "kernels/shared/green.h"
 #include "kernels/shared/hash_grid.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/material.h"
@@ -73,7 +74,15 @@ using namespace stokes;
     S(PhotonHead) F(PhotonHead, x) F(PhotonHead, y) F(PhotonHead, z) F(PhotonHead, normal) \
     S(TableShape) F(TableShape, offset) F(TableShape, row_count) F(TableShape, row_first) \
         F(TableShape, row_step) F(TableShape, r_count) F(TableShape, r_first) F(TableShape, r_step) \
-        F(TableShape, pad) \
+        F(TableShape, log_axes) \
+    S(GreenWalk) F(GreenWalk, source_depth) F(GreenWalk, eta) F(GreenWalk, critical_cosine) \
+        F(GreenWalk, deep) F(GreenWalk, deep_offset) F(GreenWalk, deep_spread) F(GreenWalk, rho_first) \
+        F(GreenWalk, bins_per_octave) F(GreenWalk, bins) F(GreenWalk, seed) F(GreenWalk, stream) \
+        F(GreenWalk, first_walk) F(GreenWalk, walks_per_item) F(GreenWalk, items) F(GreenWalk, pad0) \
+        F(GreenWalk, pad1) \
+    S(GreenShape) F(GreenShape, rho_first) F(GreenShape, rho_step) F(GreenShape, z_first) \
+        F(GreenShape, z_step) F(GreenShape, rho_count) F(GreenShape, z_count) F(GreenShape, pad0) \
+        F(GreenShape, pad1) \
     S(Ray) F(Ray, ox) F(Ray, oy) F(Ray, oz) F(Ray, t_min) F(Ray, dx) F(Ray, dy) F(Ray, dz) F(Ray, t_max) \
     S(Hit) F(Hit, t) F(Hit, u) F(Hit, v) F(Hit, triangle) \
     S(Probe) F(Probe, x) F(Probe, y) F(Probe, z) F(Probe, reach_mm) F(Probe, nx) F(Probe, ny) F(Probe, nz) \
