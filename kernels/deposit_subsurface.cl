@@ -29,6 +29,15 @@ inline float16 reradiate(__global const float16* rows, float16 f) {
     return out + rows[12] * f.sc + rows[13] * f.sd + rows[14] * f.se + rows[15] * f.sf;
 }
 
+// The pair weight in the re-radiation rows, (N-1)/(n-1), is that of light re-radiated once: given one wavelength in the
+// set, another is in it with probability (n-1)/(N-1). The k-th wavelength after it is there with probability
+// (n-k)/(N-k), given those before. Stokes' rule makes them all different.
+inline float chain_weight(float wavelengths, uint conversions) {
+    const float k = (float)(conversions + 1u);
+    const float n = (float)STOKES_WAVELENGTHS;
+    return k < n ? (wavelengths - k) / (n - k) * (n - 1.0f) / (wavelengths - 1.0f) : 0.0f;
+}
+
 // Work-items: round.count, one an entry of list.
 // Reads: list, points, rays (incident direction), materials, table_shapes [3 a medium], mean_rows and
 //   cumulative_rows of the distance samplers.
@@ -97,10 +106,11 @@ __kernel void place_exits(uint count, __global const Probe* probes, __global con
 //   of the arriving photons [W/nm].
 // Writes: the map's slot round.first_slot + i: flux that leaves there (eq. 3, 4 or 5), ExitPoint.kept and
 //   .converted, ledgers (stored, dropped deposits).
-__kernel void deposit_exits(EventRound round, __global const MaterialRecord* materials,
-                            __global const float16* spectra, __global const TableShape* table_shapes,
-                            __global const float16* table16, __global ExitPoint* exits, __global const float16* flux,
-                            __global PathLedger* ledgers, __global PhotonHead* heads, __global float16* map_flux) {
+__kernel void deposit_exits(EventRound round, __global const PassConstants* pass,
+                            __global const MaterialRecord* materials, __global const float16* spectra,
+                            __global const TableShape* table_shapes, __global const float16* table16,
+                            __global ExitPoint* exits, __global const float16* flux, __global PathLedger* ledgers,
+                            __global PhotonHead* heads, __global float16* map_flux) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     __global ExitPoint* exit_point = &exits[round.first_exit + i];
@@ -110,7 +120,8 @@ __kernel void deposit_exits(EventRound round, __global const MaterialRecord* mat
 
     float16 leaving = flux[exit_point->path];
     if (round.component == STOKES_MAP_FLUORESCENCE) {
-        leaving = reradiate(&spectra[material->reradiation_row], leaving);
+        leaving = reradiate(&spectra[material->reradiation_row], leaving) *
+                  chain_weight(pass->wavelengths, ledger->conversions);
         exit_point->converted = sum16(leaving);
     }
     leaving *= power_kept(material, round.component, table_shapes, table16, fabs(exit_point->r_mm), exit_point->row);
@@ -167,6 +178,7 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     const float16 carried = map_flux[slot] / survival;
     const float carried_sum = sum16(carried);
     ledger->roulette += exit_point.kept - carried_sum;
+    ledger->conversions += 1u;
     flux[path] = carried;
     go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(exit_point.x, exit_point.y, exit_point.z),
           (float3)(exit_point.nx, exit_point.ny, exit_point.nz), carried_sum, draw.b, draw.c);

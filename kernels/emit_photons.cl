@@ -70,6 +70,6 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
                        direction.x, direction.y, direction.z, dark ? -1.0f : INFINITY};
     flux[path] = start;
     ledgers[path] = (PathLedger){total, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f,
-                                 0.0f,  dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total / 16.0f};
+                                 0.0f,  dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total / 16.0f, 0u, {0u, 0u, 0u}};
     list[path] = path;
 }

@@ -33,6 +33,7 @@ PassConstants make_constants(const RenderSettings& render, const WavelengthSet& 
     constants.seed = render.seed;
     constants.pass = pass;
     constants.photons = photons;
+    constants.wavelengths = static_cast<float>(render.lambda_max_nm - render.lambda_min_nm + 1);
     return constants;
 }
 

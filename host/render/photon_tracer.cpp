@@ -126,7 +126,7 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
     trace_probe_.launch(exits, exits, scene.nodes, scene.blocks, scene.grid, scene.triangles, probes_, probe_hits_);
     place_exits_.launch(exits, exits, probes_, probe_hits_, scene.triangles, exits_);
     for (std::uint32_t c = 0; c < 3; ++c) {
-        deposit_.launch(counts[c], rounds[c], scene.materials, pass.rows, scene.tables.shapes, scene.tables.at_wavelengths,
+        deposit_.launch(counts[c], rounds[c], pass.constants, scene.materials, pass.rows, scene.tables.shapes, scene.tables.at_wavelengths,
                         exits_, flux_, ledgers_, maps[c].heads(), maps[c].flux());
         deposits_ += counts[c];
         refused_slots_ += maps[c].advance(counts[c]);

@@ -16,7 +16,8 @@ typedef struct PassConstants {
     unsigned int pass;         // index of the pass, from 0
     unsigned int photons;      // photons emitted in this pass
     float offset_mm;           // rays start this far above the surface they leave
-    unsigned int pad0, pad1;
+    float wavelengths;         // N: how many wavelengths the set was drawn from
+    unsigned int pad;
 } PassConstants;
 STOKES_ASSERT_SIZE(PassConstants, 288);
 

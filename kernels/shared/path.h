@@ -35,8 +35,10 @@ typedef struct PathLedger {
     unsigned int missed_exits;   // deposits dropped because the exit point found no surface
     unsigned int rays;           // rays traced for it so far, probes not counted
     float reference_flux;        // mean flux at emission [W/nm], the measure for roulette
+    unsigned int conversions;    // how often its light has been re-radiated
+    unsigned int pad[3];
 } PathLedger;
-STOKES_ASSERT_SIZE(PathLedger, 48);
+STOKES_ASSERT_SIZE(PathLedger, 64);
 
 // The accounts of a chunk of paths, added up. Written by sum_ledgers, read back by the host once a pass.
 typedef struct LedgerSums {

@@ -148,3 +148,34 @@ TEST_CASE("re-radiation rows hold eq. 1-2 with the pair weight, and nothing at o
         }
     CHECK(rows[0].v[1] > 0.0f);
 }
+
+// sum over a < b < c of f(a) g(b) h(c): light re-radiated twice, so that three wavelengths must be in the set. With
+// N/n, (N-1)/(n-1) and (N-2)/(n-2) the mean over sets is the full sum; with the pair weight twice it would fall short
+// by 1 - (N-1)(n-2)/((N-2)(n-1)) = 6.5 %.
+TEST_CASE("the k-th conversion of a chain weighs (N-k)/(n-k)", "[wavelengths]") {
+    const auto f = [](int l) { return l < 420 ? 1.0 : 0.1; };
+    const auto g = [](int l) { return l > 450 && l < 620 ? 1.0 : 0.05; };
+    const auto h = [](int l) { return l > 560 ? 1.0 : 0.02; };
+    double full = 0.0, below = 0.0, pairs = 0.0;
+    for (int l = first_nm; l <= last_nm; ++l) {
+        full += pairs * h(l);
+        pairs += below * g(l);
+        below += f(l);
+    }
+    const double n = STOKES_WAVELENGTHS, all_nm = last_nm - first_nm + 1;
+    const double weight =
+        image_weight_nm(first_nm, last_nm) * pair_weight_nm(first_nm, last_nm) * (all_nm - 2.0) / (n - 2.0);
+    Sample estimates;
+    for (std::uint32_t pass = 0; pass < 60000; ++pass) {
+        double sum = 0.0, b = 0.0, ab = 0.0;
+        for (const int l : draw_wavelengths(31, pass, first_nm, last_nm)) {
+            sum += ab * h(l);
+            ab += b * g(l);
+            b += f(l);
+        }
+        estimates.add(weight * sum);
+    }
+    CAPTURE(full, estimates.mean(), estimates.standard_error());
+    CHECK(estimates.standard_error() < 0.005 * full);
+    CHECK(std::abs(estimates.z(full)) < 3.5);
+}

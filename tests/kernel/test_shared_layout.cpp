@@ -54,11 +54,11 @@ using namespace stokes;
     S(PassConstants) F(PassConstants, lambda_nm) F(PassConstants, to_x) F(PassConstants, to_y) \
         F(PassConstants, to_z) F(PassConstants, spectral_weight_nm) F(PassConstants, radius_mm) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
-        F(PassConstants, offset_mm) F(PassConstants, pad0) F(PassConstants, pad1) \
+        F(PassConstants, offset_mm) F(PassConstants, wavelengths) F(PassConstants, pad) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \
         F(PathLedger, stored) F(PathLedger, fate) F(PathLedger, missed_exits) F(PathLedger, rays) \
-        F(PathLedger, reference_flux) \
+        F(PathLedger, reference_flux) F(PathLedger, conversions) F(PathLedger, pad) \
     S(LedgerSums) F(LedgerSums, flux) F(LedgerSums, fates) F(LedgerSums, missed_exits) F(LedgerSums, rays) \
         F(LedgerSums, pad) \
     S(SurfacePoint) F(SurfacePoint, x) F(SurfacePoint, y) F(SurfacePoint, z) F(SurfacePoint, material) \

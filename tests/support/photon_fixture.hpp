@@ -27,6 +27,7 @@ inline Buffer<PassConstants> pass_on_device(std::uint32_t seed, std::uint32_t ph
     constants.pass = 2;
     constants.photons = photons;
     constants.offset_mm = offset_mm;
+    constants.wavelengths = 481.0f;
     return on_device(std::vector<PassConstants>{constants});
 }
 

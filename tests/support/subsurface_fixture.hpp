@@ -126,6 +126,7 @@ struct SubsurfaceArrivals {
             rays.push_back({0, 0, 0, 0, direction.x, direction.y, direction.z, 1e30f});
             flux.push_back(random_flux(generator, 0.1, 2.0));
             ledgers.push_back(open_ledger(flux.back()));
+            ledgers.back().conversions = i % 5 == 0 ? 15 : i % 4;
             (i % 3 == 2 || generator() % 2 == 0 ? fluorescence : elastic).push_back(i);
         }
     }
