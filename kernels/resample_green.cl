@@ -4,11 +4,12 @@
 #include "lib/sampling.clh"
 #include "shared/green.h"
 
-// Index and fraction on an axis of the universal table whose nodes from 1 on are first 2^((i - 1) step); the fraction is
-// linear in the logarithm, and in the value below node 1.
-inline TablePlace green_place(float value, float first, float step, uint count) {
-    const float ratio = value / first;
-    return table_place(ratio > 1.0f ? 1.0f + log2(ratio) / step : ratio, 0.0f, 1.0f, count);
+// Positions on an axis of the universal table, node i >= 1 at first 2^((i - 1) step): the whole part is the node below,
+// the rest the fraction to the next, linear in the logarithm, and in the value below node 1. Held beyond the last node.
+inline float16 green_position(float16 value, float first, float step, uint count) {
+    const float16 ratio = value / first;
+    const float16 position = select(ratio, 1.0f + log2(ratio) / step, ratio > 1.0f);
+    return clamp(position, 0.0f, (float)(count - 1u));
 }
 
 // Work-items: one an entry (z, rho) of the universal table.
@@ -39,18 +40,28 @@ __kernel void resample_green(GreenShape shape, TableShape target, __global const
     const float z_mm = log_axis_node(target.row_first, target.row_step, i / target.r_count);
     const float r_mm = log_axis_node(target.r_first, target.r_step, i % target.r_count);
     const float reach = shape.rho_first * exp2((float)(shape.rho_count - 2u) * shape.rho_step) * 1.0001f;
-    float log_h[STOKES_WAVELENGTHS], factor[STOKES_WAVELENGTHS];
+    const float16 sigma = vload16(0, sigma_t);
+    const float16 rho = sigma * r_mm;
+    const float16 z_at = green_position(sigma * z_mm, shape.z_first, shape.z_step, shape.z_count);
+    const float16 r_at =
+        green_position(max(rho, shape.rho_first), shape.rho_first, shape.rho_step, shape.rho_count);
+    const float16 z_low = min(floor(z_at), (float)(shape.z_count - 2u));
+    const float16 r_low = min(floor(r_at), (float)(shape.rho_count - 2u));
+    float corner[4][STOKES_WAVELENGTHS];
+    uint node[STOKES_WAVELENGTHS];
+    vstore16(convert_uint16(z_low) * shape.rho_count + convert_uint16(r_low), 0, node);
     for (uint j = 0u; j < STOKES_WAVELENGTHS; ++j) {
-        const float rho = sigma_t[j] * r_mm;
-        const TablePlace z = green_place(sigma_t[j] * z_mm, shape.z_first, shape.z_step, shape.z_count);
-        const TablePlace r = green_place(fmax(rho, shape.rho_first), shape.rho_first, shape.rho_step, shape.rho_count);
-        __global const float* low = blended + (size_t)z.lower * shape.rho_count * STOKES_WAVELENGTHS + j;
-        __global const float* high = blended + (size_t)z.upper * shape.rho_count * STOKES_WAVELENGTHS + j;
-        const uint from = r.lower * STOKES_WAVELENGTHS, to = r.upper * STOKES_WAVELENGTHS;
-        log_h[j] = mix(mix(low[from], low[to], r.fraction), mix(high[from], high[to], r.fraction), z.fraction);
-        factor[j] = rho > reach ? 0.0f : sigma_t[j] * fmin(rho / shape.rho_first, 1.0f);
+        __global const float* low = blended + (size_t)node[j] * STOKES_WAVELENGTHS + j;
+        __global const float* high = low + (size_t)shape.rho_count * STOKES_WAVELENGTHS;
+        corner[0][j] = low[0];
+        corner[1][j] = low[STOKES_WAVELENGTHS];
+        corner[2][j] = high[0];
+        corner[3][j] = high[STOKES_WAVELENGTHS];
     }
-    table16[target.offset + i] = vload16(0, factor) * exp(vload16(0, log_h));
+    const float16 log_h = mix(mix(vload16(0, corner[0]), vload16(0, corner[1]), r_at - r_low),
+                              mix(vload16(0, corner[2]), vload16(0, corner[3]), r_at - r_low), z_at - z_low);
+    const float16 near = sigma * min(rho / shape.rho_first, 1.0f);
+    table16[target.offset + i] = select(near * exp(log_h), (float16)(0.0f), rho > reach);
 }
 
 // The trapezoid weight of a node between two others.
@@ -58,9 +69,9 @@ inline float half_span(float before, float after) { return 0.5f * (after - befor
 
 // Work-items: one a row (depth) of the medium's table.
 // Reads:  table16 as above; u1 [first_row + row] float16: the probability of leaving scattered.
-// Writes: table16: each wavelength's trapezoid integral over r is u1; mean_rows: the mean over wavelengths of H1/u1, the
-//         density that sample_distance draws from; cumulative_rows: its trapezoid integral. Both [row][r] at the same
-//         offset as table16.
+// Writes: table16: each wavelength's trapezoid integral over r is u1; mean_rows: the mean over wavelengths of H1/u1,
+//         the density that sample_distance draws from; cumulative_rows: its trapezoid integral. Both [row][r] at the
+//         same offset as table16.
 // Where the density is convex, straight lines between its values lie above it; each value is lowered by a twelfth of
 // the second difference first, so that every stretch of two cells holds what it should.
 __kernel void normalise_green(TableShape target, uint first_row, __global const float16* restrict u1,

@@ -40,8 +40,8 @@ inline void score(__global float16* histogram, __private const GreenWalk* walk, 
 }
 
 // What a walk in the deep still has to give, and where.
-inline void score_deep(__global float16* histogram, __private const GreenWalk* walk, __constant float16* albedos, float2 at,
-                       float z, float16 low, float16 high, Random4 draw) {
+inline void score_deep(__global float16* histogram, __private const GreenWalk* walk, __constant float16* albedos,
+                       float2 at, float z, float16 low, float16 high, Random4 draw) {
     const float h = z + walk->deep_offset - walk->deep_spread * log(1.0f - draw.a);
     const float cosine = 1.0f - draw.b;
     const float s = h / cosine;
