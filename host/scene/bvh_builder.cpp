@@ -90,7 +90,7 @@ class Writer {
         BvhNode node{};
         for (std::size_t slot = 0; slot < STOKES_BVH_WIDTH; ++slot) {
             node.lo_x[slot] = node.lo_y[slot] = node.lo_z[slot] = 65535;
-            node.child[slot] = STOKES_BVH_EMPTY;
+            node.child[slot] = STOKES_BVH_LEAF;
         }
         const auto count = [](float x, float origin, float scale) {
             return (static_cast<double>(x) - origin) * scale;

@@ -19,7 +19,7 @@ struct BvhBox {
     static constexpr float infinity = std::numeric_limits<float>::infinity();
 };
 
-// A triangle, or a part of one, as the builder moves it about. box bounds that part.
+// A triangle as the builder moves it about, and its bounds.
 struct BvhRef {
     BvhBox box;
     std::uint32_t triangle = 0;

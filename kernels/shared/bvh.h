@@ -7,7 +7,7 @@
 // Children are node indices; with STOKES_BVH_LEAF set, the low bits are the index of a block of triangles.
 #define STOKES_BVH_WIDTH 16
 #define STOKES_BVH_LEAF 0x80000000u
-#define STOKES_BVH_EMPTY 0xffffffffu
+#define STOKES_BVH_EMPTY 0xffffffffu  // a root only
 
 // Most levels of nodes that the builder makes, and what a traversal stack must therefore hold: a visit to a
 // node takes one entry off and puts at most 16 on.
@@ -16,7 +16,8 @@
 
 // One node. Bounds are counts of the scene's grid (BvhGrid), rounded outward; the slack that float rounding
 // asks for is added per ray. Children stand in order of falling surface area. An empty slot has lo > hi on
-// every axis and child STOKES_BVH_EMPTY. Written by the host's builder.
+// every axis and the first block as its child: a ray that meets it all the same, because its numbers are not
+// finite, reads triangles that exist. Written by the host's builder.
 typedef struct BvhNode {
     unsigned short lo_x[16], lo_y[16], lo_z[16];
     unsigned short hi_x[16], hi_y[16], hi_z[16];

@@ -4,7 +4,7 @@
 
 #include "limits.h"
 
-// A ray segment. Written by emit_photons, scatter_*, sample_exits, camera_rays; read by trace_*.
+// A ray segment. Written by emit_photons, scatter_diffuse, retrace_* and camera_rays; read by trace_*.
 // t_max < t_min marks a ray that is not to be traced.
 typedef struct Ray {
     float ox, oy, oz;  // origin [mm]
@@ -22,8 +22,8 @@ typedef struct Hit {
 } Hit;
 STOKES_ASSERT_SIZE(Hit, 16);
 
-// A search for the surface of a body near a point of its tangent plane. Written by sample_exits, read by trace_probe.
-// reach_mm < 0 marks a probe that is not to be traced.
+// A search for the surface of a body near a point of its tangent plane. Written by sample_exits, read by
+// trace_probe. reach_mm < 0 marks a probe that is not to be traced.
 typedef struct Probe {
     float x, y, z;      // point on the tangent plane [mm]
     float reach_mm;     // how far to look to either side [mm]

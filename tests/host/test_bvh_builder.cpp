@@ -43,8 +43,9 @@ struct Inspection {
         double last_area = std::numeric_limits<double>::infinity();
         for (int i = 0; i < STOKES_BVH_WIDTH; ++i) {
             const Bounds b = child_bounds(node, i);
-            if (node.child[i] == STOKES_BVH_EMPTY) {
+            if (b.lo[0] > b.hi[0]) {
                 for (int a = 0; a < 3; ++a) bad_empty += !(b.lo[a] > b.hi[a]);
+                bad_empty += node.child[i] != STOKES_BVH_LEAF;  // the first block, safe to visit
                 last_area = -1.0;
                 continue;
             }

@@ -230,6 +230,69 @@ TEST_CASE("a far camera and a scene far from the origin lose no hits") {
     CHECK(count_hits(scene.closest(rays)) == rays.size());
 }
 
+// Directions in single precision end up to 1 mm off at 1e7 mm, so some rays miss; t has the precision of the
+// distance, but the point on the triangle that of the scene.
+TEST_CASE("rays from very far away meet what a double-precision search meets, closest and any") {
+    std::vector<Triangle> triangles = sphere_mesh(16, 32, 7.5f, glm::vec3(40.0f, -20.0f, 5.0f));
+    append(triangles, box_mesh(glm::vec3(50.0f, -25.0f, 0.0f), glm::vec3(52.0f, -15.0f, 10.0f)));
+    Traced scene(triangles);
+    for (const float away : {3e3f, 1e5f, 1e7f, 1e9f, 1e12f}) {
+        CAPTURE(away);
+        auto rays = random_rays(2000, -9.0f, 9.0f, 25);
+        for (Ray& r : rays) {
+            r.ox += 42.0f - away * r.dx, r.oy += -20.0f - away * r.dy, r.oz += 5.0f - away * r.dz;
+            if (&r < &rays[500]) r.t_max = away + 100.0f;
+            if (&r >= &rays[1900]) r.t_max = 0.98f * away - 100.0f;  // ends short of the scene
+        }
+        const auto hits = scene.closest(rays);
+        const auto occluded = scene.any(rays);
+        int wrong = 0, undecided = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const glm::dvec3 o(rays[i].ox, rays[i].oy, rays[i].oz), d(rays[i].dx, rays[i].dy, rays[i].dz);
+            double nearest = infinity, nearest_grown = infinity;
+            for (const Triangle& t : triangles) {
+                const double inner = crossing(t, o, d, 1e-3), outer = crossing(t, o, d, -1e-3);
+                if (inner < nearest) nearest = inner;
+                if (outer < nearest_grown) nearest_grown = outer;
+            }
+            if (i >= 1900) nearest = nearest_grown = infinity;
+            const bool found = hits[i].triangle != STOKES_NONE;
+            wrong += occluded[i] != (found ? 1u : 0u);
+            if (nearest != nearest_grown) {
+                ++undecided;
+                continue;
+            }
+            wrong += found != std::isfinite(nearest);
+            if (!found || !std::isfinite(nearest)) continue;
+            const Triangle& at = triangles.at(hits[i].triangle);
+            const glm::dvec3 point =
+                v0_of(at) + double(hits[i].u) * e1_of(at) + double(hits[i].v) * e2_of(at);
+            wrong += glm::length(o + nearest * d - point) > 1e-3;
+            wrong += std::fabs(hits[i].t - nearest) > 1e-6 * away;
+        }
+        CHECK(wrong == 0);
+        CHECK(undecided < 60);
+        if (away <= 1e7f) CHECK(count_hits(hits) > 700);
+    }
+}
+
+TEST_CASE("rays whose numbers are not finite, or barely, find nothing and read nothing astray", "[tiny]") {
+    const float nan = std::numeric_limits<float>::quiet_NaN(), huge = std::numeric_limits<float>::max();
+    Traced scene(triangle_soup(40, 0.05f, glm::vec3(1.0f), 26));  // six blocks: ten slots stay empty
+    std::vector<Ray> rays;
+    for (const float x : {nan, infinity, huge, 1e30f, 1e20f})
+        for (int axes = 1; axes < 8; ++axes) {
+            const glm::vec3 odd(axes & 1 ? x : 0.0f, axes & 2 ? x : 0.0f, axes & 4 ? x : 0.0f);
+            rays.push_back(make_ray(odd, {0.6f, 0.0f, 0.8f}));
+            rays.push_back(make_ray(odd, -glm::normalize(glm::vec3(axes & 1, axes & 2, axes & 4))));
+            rays.push_back(make_ray(glm::vec3(-1.0f), odd));
+        }
+    rays.push_back(make_ray(glm::vec3(-1.0f), glm::vec3(0.0f)));
+    CHECK(count_hits(scene.closest(rays)) == 0);
+    const auto occluded = scene.any(rays);
+    CHECK(std::accumulate(occluded.begin(), occluded.end(), 0u) == 0);
+}
+
 TEST_CASE("equal distances go to the lower triangle index, wherever the triangles lie in the hierarchy") {
     const auto once = sphere_mesh(12, 24, 10.0f, glm::vec3(0.0f));
     std::vector<Triangle> thrice = once;
