@@ -4,10 +4,12 @@
 
 #include "limits.h"
 
-// A photon counts towards a point when it is nearer than the radius, its normal is within 60 degrees of the
+// A photon counts towards a point when it is nearer than the radius, its normal is within 57 degrees of the
 // point's, and it is not further from the tangent plane than this fraction of the radius: so no light comes
-// through a thin wall, round an edge or down from a step.
-#define STOKES_GATHER_MIN_COSINE 0.5f
+// through a thin wall, round an edge or down from a step. The cosine lies midway between those of a hexagon's
+// corner, 0.5, and of a cuboctahedron's edge, 0.577: normals are rounded by up to 0.007 (lib/normal.clh), and
+// all edges of a regular solid must turn out alike.
+#define STOKES_GATHER_MIN_COSINE 0.54f
 #define STOKES_GATHER_MAX_HEIGHT 0.25f
 
 // The point that a camera ray sees. Written by collect_points, read by gather_radiance, one per camera ray.

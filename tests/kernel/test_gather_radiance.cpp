@@ -93,7 +93,7 @@ class Bench {
             const glm::vec3 e2(glm::cross(s.normal, glm::dvec3(e1)));
             const glm::vec3 d(s.normal * (s.from_behind ? 1.0 : -1.0));
             triangles.push_back({p.x, p.y, p.z, i, e1.x, e1.y, e1.z, 0, e2.x, e2.y, e2.z, 0});
-            shapes.push_back({s.material, s.light, 0, 0});
+            shapes.push_back({s.material, s.light});
             rays.push_back({p.x - d.x, p.y - d.y, p.z - d.z, 0.0f, d.x, d.y, d.z, INFINITY});
             hits.push_back({1.0f, 0.0f, 0.0f, s.missed ? STOKES_NONE : i});
         }
@@ -316,6 +316,42 @@ TEST_CASE("light does not come through a wall, round an edge or from a step", "[
     double expected = 0.0;
     for (int k = 0; k < 16; ++k) expected += 2.0 * spectrum(k) / (pi * pi);
     CHECK(lit.x(STOKES_MAP_SURFACE, 0) == Approx(expected).epsilon(1e-5));
+}
+
+// Prisms over regular polygons, turned at random: each edge is seen from both of its faces, close by, with a
+// photon close by on the other.
+TEST_CASE("the faces of a regular prism treat each other's photons alike at every edge", "[gather]") {
+    std::mt19937 generator(17);
+    for (int sides = 3; sides <= 16; ++sides)
+        for (int turn = 0; turn < 40; ++turn) {
+            const glm::dvec3 axis = random_direction(generator), other = random_direction(generator);
+            const glm::dvec3 u = glm::normalize(glm::cross(axis, other)), v = glm::cross(axis, u);
+            std::vector<glm::dvec3> normals;
+            for (int i = 0; i < sides; ++i) {
+                const double angle = 2.0 * pi * i / sides;
+                normals.push_back(std::cos(angle) * u + std::sin(angle) * v);
+            }
+            // The edge of faces a and b lies at a + b scaled to its distance; in order of edges, 10 mm apart.
+            std::vector<Photon> photons;
+            std::vector<Seen> seen;
+            for (int i = 0; i < sides; ++i) {
+                const glm::dvec3 a = normals[i], b = normals[(i + 1) % sides];
+                const glm::dvec3 edge = (a + b) * (10.0 / (1.0 + glm::dot(a, b)));
+                const glm::dvec3 away = 10.0 * i * axis;
+                const glm::dvec3 along_b = glm::cross(axis, b), along_a = -glm::cross(axis, a);
+                photons.push_back({stored(edge + 2.0 * away + 0.05 * along_b), b});
+                photons.push_back({stored(edge + 2.0 * away + 10.0 * axis + 0.05 * along_a), a});
+                seen.push_back({stored(edge + 2.0 * away + 0.05 * along_a), a, white});
+                seen.push_back({stored(edge + 2.0 * away + 10.0 * axis + 0.05 * along_b), b, white});
+            }
+            Bench bench(seen, photons, 1.0f);
+            bench.run();
+            const std::vector<FilmValue> film = bench.film();
+            const bool counts = std::cos(2.0 * pi / sides) > STOKES_GATHER_MIN_COSINE;
+            CAPTURE(sides);
+            for (std::size_t i = 0; i < seen.size(); ++i)
+                REQUIRE((film[STOKES_MAP_SURFACE * seen.size() + i].x > 0.0f) == counts);
+        }
 }
 
 TEST_CASE("emitters shine from their front, beside what they reflect; passes add up", "[gather][tiny]") {
