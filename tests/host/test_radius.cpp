@@ -9,6 +9,8 @@ using namespace stokes;
 
 namespace {
 
+constexpr double photons_per_disk = 20.0;  // as radius.hpp states
+
 // A square of 20 mm in the plane z = 0.
 Scene square_scene() {
     Scene scene;
@@ -74,10 +76,10 @@ TEST_CASE("the radius shrinks as pass^((alpha - 1) / 2)", "[radius]") {
     CHECK(ratio == Approx(std::pow(1000.0, -1.0 / 6.0)).epsilon(1e-5));
 }
 
-// 400 mm^2, 1000 photons: ten of them on pi r^2 = 4 mm^2.
+// 400 mm^2, 1000 photons: each takes 0.4 mm^2.
 TEST_CASE("without photons in view the radius spreads a pass over the scene's surface", "[radius]") {
     const Scene scene = square_scene();
-    CHECK(spread_radius_mm(scene, 1000) == Approx(std::sqrt(4.0 / M_PI)).epsilon(1e-6));
+    CHECK(spread_radius_mm(scene, 1000) == Approx(std::sqrt(photons_per_disk * 0.4 / M_PI)).epsilon(1e-6));
     CHECK(spread_radius_mm(scene, 4000) == Approx(0.5 * spread_radius_mm(scene, 1000)).epsilon(1e-12));
 
     Scene with_light = scene;  // emitters keep no photons
@@ -87,16 +89,17 @@ TEST_CASE("without photons in view the radius spreads a pass over the scene's su
 
     Scene layered = scene;  // a hundred squares within a sphere of 200 mm^2 pi
     for (int i = 0; i < 99; ++i) layered.shapes.push_back(scene.shapes.front());
-    CHECK(spread_radius_mm(layered, 1000) == Approx(std::sqrt(0.01 * 4.0 * 200.0)).epsilon(1e-6));
+    CHECK(spread_radius_mm(layered, 1000) ==
+          Approx(std::sqrt(photons_per_disk * 4.0 * 200.0 / 1000.0)).epsilon(1e-6));
 }
 
 TEST_CASE("a scene without surfaces has no radius", "[radius]") {
     CHECK_THROWS_AS(spread_radius_mm(Scene{}, 1000), RunError);
 }
 
-// Photons lie at 1 / spacing^2 per mm^2, so the disk of ten has pi r^2 = 10 spacing^2. A tile of 16 x 16
+// Photons lie at 1 / spacing^2 per mm^2, so n of them take pi r^2 = n spacing^2. A tile of 16 x 16
 // pixels holds some hundred photons; the median over tiles is within 3 % of the density.
-TEST_CASE("the first radius catches ten photons where the camera looks", "[radius]") {
+TEST_CASE("the first radius catches its photons where the camera looks", "[radius]") {
     for (const glm::dvec3 eye : {glm::dvec3(0.0, 0.0, 20.0), glm::dvec3(12.0, -3.0, 14.0)}) {
         Camera camera;
         camera.position_mm = eye;
@@ -105,7 +108,7 @@ TEST_CASE("the first radius catches ten photons where the camera looks", "[radiu
         const CameraRecord record = make_camera_record(camera, 80, 64);
         const std::vector<GatherPoint> points = points_on_plane(record);
         for (const float spacing_mm : {0.1f, 0.05f}) {
-            const double expected = spacing_mm * std::sqrt(10.0 / M_PI);
+            const double expected = spacing_mm * std::sqrt(photons_per_disk / M_PI);
             CHECK(first_radius_mm(record, points, photon_grid(spacing_mm)) == Approx(expected).epsilon(0.03));
         }
         std::vector<PhotonHead> empty = photon_grid(0.1f);

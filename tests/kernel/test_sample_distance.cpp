@@ -81,7 +81,8 @@ std::vector<float> draw(const PowerTable& table, float theta_deg, const std::vec
     const Buffer<float> angles(device, "angles", std::vector<float>(u.size(), theta_deg)),
         uniforms(device, "u", u);
     const Buffer<float> distances(device, "distances", u.size());
-    static Kernel kernel = test_program("power_table.cl").kernel("draw_distances");
+    // Built once, and never released: a simulator's own statics may be gone when this file's are destroyed.
+    static Kernel& kernel = *new Kernel(test_program("power_table.cl").kernel("draw_distances"));
     kernel.launch(u.size(), mean_rows, cumulative_rows, sampler.shape, angles, uniforms, distances,
                   static_cast<std::uint32_t>(u.size()));
     return distances.download();
