@@ -15,23 +15,23 @@ inline uint choose_event(__global const MaterialRecord* material, float u) {
     return material->medium == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_ELASTIC;
 }
 
-// Work-items: count, one an entry of list.
-// Reads: list [count], rays, hits, flux [W/nm, paths], triangles, shapes, materials.
-// Writes: points [paths], kinds [count]: STOKES_EVENT_*, ledgers (paths that end here).
+// Work-items: round.count, one an entry of list.
+// Reads: list [round.count], rays, hits, flux [W/nm, paths], triangles, shapes, materials.
+// Writes: points [paths], kinds [round.count]: STOKES_EVENT_*, ledgers (paths that end here).
 // Light that meets the back of a surface is absorbed.
-__kernel void classify_photons(uint count, uint event, __global const PassConstants* pass, __global const uint* list,
+__kernel void classify_photons(EventRound round, __global const PassConstants* pass, __global const uint* list,
                                __global const Ray* rays, __global const Hit* hits, __global const float16* flux,
                                __global const Triangle* triangles, __global const MaterialRecord* materials,
                                __global const ShapeRecord* shapes, __global SurfacePoint* points,
                                __global PathLedger* ledgers, __global uchar* kinds) {
     const uint i = (uint)get_global_id(0);
-    if (i >= count) return;
+    if (i >= round.count) return;
     const uint path = list[i];
     kinds[i] = (uchar)STOKES_EVENT_NONE;
     if (ledgers[path].fate != STOKES_FATE_ALIVE) return;
     const float total = sum16(flux[path]);
     if (!(total < INFINITY)) {
-        ledgers[path].fate = STOKES_FATE_NOT_FINITE;
+        ledgers[path].fate = STOKES_FATE_OVERFLOW;
         return;
     }
     const Hit hit = hits[path];
@@ -50,7 +50,7 @@ __kernel void classify_photons(uint count, uint event, __global const PassConsta
                                   normal.x,   normal.y,   normal.z,   tri->body};
 
     const bool front = rays[path].dx * normal.x + rays[path].dy * normal.y + rays[path].dz * normal.z < 0.0f;
-    const Random4 draw = random4(pass->seed, pass->pass, path, event, RNG_BRANCH);
+    const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
     const uint kind = front ? choose_event(&materials[material], draw.a) : STOKES_EVENT_NONE;
     if (kind == STOKES_EVENT_NONE) {
         ledgers[path].absorbed += total;

@@ -128,16 +128,17 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
     const float kept = sum16(leaving);
     exit_point->kept = kept;
 
+    const bool sound = found && within_limit(kept, ledger);
     const uint slot = round.first_slot + i;
     if (slot < round.slot_limit) {
         const float3 normal = (float3)(exit_point->nx, exit_point->ny, exit_point->nz);
         heads[slot] = (PhotonHead){exit_point->x, exit_point->y, exit_point->z,
-                                   found && kept > 0.0f ? pack_normal(normal) : STOKES_EMPTY_SLOT};
+                                   kept > 0.0f && sound ? pack_normal(normal) : STOKES_EMPTY_SLOT};
         map_flux[slot] = leaving;
     }
     if (!found)
         ledger->missed_exits += 1u;
-    else if (slot < round.slot_limit)
+    else if (slot < round.slot_limit && sound)
         ledger->stored += kept;
 }
 
@@ -155,6 +156,11 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     const uint path = exit_point.path;
     __global PathLedger* ledger = &ledgers[path];
     const float16 incident = flux[path];
+    if (!(within_limit(exit_point.kept, ledger) && within_limit(exit_point.converted, ledger))) {
+        ledger->dropped += sum16(incident);
+        end_path(&rays[path], ledger, STOKES_FATE_OVERFLOW);
+        return;
+    }
     const float taken_up = sum16(incident * spectra[materials[exit_point.material].excitation_row]);
     const float in_medium = exit_point.converted - exit_point.kept;
     ledger->absorbed += sum16(incident) - taken_up + max(in_medium, 0.0f);
@@ -201,6 +207,11 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
     const float16 incident = flux[path];
     const float incident_sum = sum16(incident);
     const float kept = single.kept + multiple.kept;
+    if (!within_limit(kept, ledger)) {
+        ledger->dropped += incident_sum;
+        end_path(&rays[path], ledger, STOKES_FATE_OVERFLOW);
+        return;
+    }
     ledger->absorbed += max(incident_sum - kept, 0.0f);
     ledger->created += max(kept - incident_sum, 0.0f);
     const float missed =

@@ -140,8 +140,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     for (const Shape& shape : scene.shapes) {
         first_triangle.push_back(first_triangle.back() + static_cast<std::uint32_t>(shape.mesh.triangles.size()));
         shape_records.push_back({static_cast<std::uint32_t>(shape.material),
-                                 shape.light < 0 ? STOKES_NONE : static_cast<std::uint32_t>(shape.light),
-                                 static_cast<std::uint32_t>(shape.body), 0});
+                                 shape.light < 0 ? STOKES_NONE : static_cast<std::uint32_t>(shape.light)});
     }
     const Bvh bvh = build_bvh(all);
     grid = bvh.grid;

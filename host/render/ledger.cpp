@@ -1,12 +1,26 @@
 #include "host/render/ledger.hpp"
 
+#include <fmt/core.h>
+
+#include <cmath>
 #include <numeric>
+
+#include "host/core/log.hpp"
 
 namespace stokes {
 
 double Ledger::imbalance() const {
-    if (!(emitted > 0.0)) return 0.0;
-    return (emitted + created - absorbed - stokes_loss - escaped - dropped - roulette) / emitted;
+    const double came = emitted + created;
+    return came > 0.0 ? (came - absorbed - stokes_loss - escaped - dropped - roulette) / came : 0.0;
+}
+
+void warn_about(const Ledger& ledger) {
+    if (ledger.created > 0.01 * ledger.emitted)
+        warn(fmt::format("{:.3g} times the emitted light was created, by power tables above one or by fluorophores that emit "
+                         "more than they take up",
+                         ledger.created / ledger.emitted));
+    if (!(std::abs(ledger.imbalance()) < 1e-4))
+        warn(fmt::format("the account of the light does not close: imbalance {:.2g}", ledger.imbalance()));
 }
 
 void LedgerBook::add(const PhotonAccount& account, double spectral_weight_nm) {
@@ -27,6 +41,10 @@ Ledger LedgerBook::ledger() const {
     double* const fields[] = {&ledger.emitted, &ledger.absorbed, &ledger.stokes_loss, &ledger.escaped,
                               &ledger.dropped, &ledger.roulette, &ledger.created,     &ledger.stored};
     for (std::size_t k = 0; k < energy_.size(); ++k) *fields[k] = energy_[k] * share;
+    if (ledger.stokes_loss < 0.0) {  // a fluorophore that emits more than it takes up
+        ledger.created -= ledger.stokes_loss;
+        ledger.stokes_loss = 0.0;
+    }
     ledger.photons = photons();
     ledger.absorbed_photons = fates_[STOKES_FATE_ABSORBED];
     ledger.escaped_photons = fates_[STOKES_FATE_ESCAPED];
@@ -38,7 +56,7 @@ std::map<std::string, std::uint64_t> LedgerBook::dropped() const {
     return {{"missed_exit", missed_exits_},
             {"map_full", refused_slots_},
             {"event_limit", fates_[STOKES_FATE_EVENT_LIMIT]},
-            {"not_finite", fates_[STOKES_FATE_NOT_FINITE]}};
+            {"overflow", fates_[STOKES_FATE_OVERFLOW]}};
 }
 
 }  // namespace stokes

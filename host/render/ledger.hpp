@@ -18,22 +18,26 @@ struct Ledger {
     double escaped = 0.0;      // left the scene
     double dropped = 0.0;      // cut off: missed exits, full maps, the limit of events
     double roulette = 0.0;     // statistical balance of Russian roulette, mean zero
-    double created = 0.0;      // by power tables above one
+    double created = 0.0;      // by power tables above one, and by fluorophores that emit more than they take up
     double stored = 0.0;       // put into the maps; not part of the sum, light is stored at every event
     std::uint64_t photons = 0, absorbed_photons = 0, escaped_photons = 0, dropped_photons = 0;
 
-    // (emitted + created - everything the light went to) / emitted: 0 but for rounding.
+    // (emitted + created - everything the light went to) / (emitted + created): 0 but for rounding.
     double imbalance() const;
 };
+
+// Says, once, what a user should not overlook: light created beyond a hundredth of what was emitted, or an account that
+// does not close to 1e-4.
+void warn_about(const Ledger& ledger);
 
 // Sums over all passes of a render.
 class LedgerBook {
   public:
-    // spectral_weight_nm: PassConstants::spectral_weight_nm of the pass.
+    // spectral_weight_nm: image_weight_nm() of the render.
     void add(const PhotonAccount& account, double spectral_weight_nm);
 
     Ledger ledger() const;
-    // Deposits and paths that were dropped, by cause: missed_exit, map_full, event_limit, not_finite.
+    // Deposits and paths that were dropped, by cause: missed_exit, map_full, event_limit, overflow.
     std::map<std::string, std::uint64_t> dropped() const;
     std::uint64_t photons() const;
     std::uint64_t rays() const { return rays_; }

@@ -17,7 +17,7 @@ Flux16 sampled(const Spectrum& spectrum, const WavelengthSet& set, double factor
 }
 
 PassConstants make_constants(const RenderSettings& render, const WavelengthSet& set, std::uint32_t pass,
-                             std::uint32_t photons, double radius_mm) {
+                             std::uint32_t photons) {
     PassConstants constants{};
     const double weight = image_weight_nm(render.lambda_min_nm, render.lambda_max_nm);
     const double to_film = luminous_efficacy * 1e6 * weight;
@@ -28,8 +28,6 @@ PassConstants make_constants(const RenderSettings& render, const WavelengthSet& 
         constants.to_y[i] = static_cast<float>(to_film * observer.y.at(set[i]));
         constants.to_z[i] = static_cast<float>(to_film * observer.z.at(set[i]));
     }
-    constants.spectral_weight_nm = static_cast<float>(weight);
-    constants.radius_mm = static_cast<float>(radius_mm);
     constants.seed = render.seed;
     constants.pass = pass;
     constants.photons = photons;
@@ -68,12 +66,11 @@ std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluor
 }
 
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
-                              const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons,
-                              double radius_mm) {
+                              const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons) {
     const RenderSettings& render = scene.render;
     const WavelengthSet set = draw_wavelengths(render.seed, pass, render.lambda_min_nm, render.lambda_max_nm);
     PassSpectra result;
-    result.constants = make_constants(render, set, pass, photons, radius_mm);
+    result.constants = make_constants(render, set, pass, photons);
     for (const Material& material : scene.materials) result.rows.push_back(sampled(material.reflectance, set));
     const double pair_weight = pair_weight_nm(render.lambda_min_nm, render.lambda_max_nm);
     for (const Fluorophore& fluorophore : scene.fluorophores) {

@@ -34,8 +34,7 @@ std::vector<double> light_probabilities(const Scene& scene);
 
 // surface_area_mm2: per light, of its emitting surface (beams: unused).
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
-                              const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons,
-                              double radius_mm);
+                              const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons);
 
 // Re-radiation matrix of eq. 1-2 at a wavelength set: [ex][em] = conversion E(ex) F(em) pair weight where em > ex
 // (Stokes), else 0. Flux at ex [W/nm] times it is flux at em [W/nm].

@@ -2,33 +2,46 @@
 
 #include <algorithm>
 
-#include "host/core/error.hpp"
-
 namespace stokes {
 
-PhotonMap::PhotonMap(const Device& device, const std::string& name, std::uint32_t capacity)
+namespace {
+
+// What SpatialHash and HashBuilder take for each slot, rounded up [bytes].
+constexpr std::uint64_t hash_bytes_per_slot = 128;
+
+// Slots are counted in 32 bits, and the float16 of one buffer are addressed in 64.
+constexpr std::uint64_t largest_map = 0x7fffffff;
+
+}  // namespace
+
+PhotonMap::PhotonMap(const Device& device, const std::string& name, std::uint32_t capacity, HashBuilder* builder,
+                     SpatialHash* hash)
     : device_(device),
       name_(name),
       capacity_(capacity),
+      builder_(builder),
+      hash_(hash),
       heads_(device, name + " map", capacity),
       flux_(device, name + " map flux", capacity) {}
 
 void PhotonMap::reserve(std::uint32_t count) {
     const std::uint64_t needed = std::uint64_t{used_} + count;
-    if (needed <= capacity_ || full_) return;
-    const std::uint64_t wanted = std::min<std::uint64_t>(needed + needed / 2, 0x7fffffffu);
-    try {
-        const Buffer<PhotonHead> heads(device_, name_ + " map", wanted);
-        const Buffer<Flux16> flux(device_, name_ + " map flux", wanted);
-        heads_.copy_to(heads, used_);
-        flux_.copy_to(flux, used_);
-        device_.finish();
-        heads_ = heads;
-        flux_ = flux;
-        capacity_ = static_cast<std::uint32_t>(wanted);
-    } catch (const InputError&) {  // over the memory budget
-        full_ = true;
-    }
+    if (needed <= capacity_) return;
+    // The map and, at most, its hash anew, beside what is there now.
+    const std::uint64_t slot_bytes = sizeof(PhotonHead) + sizeof(Flux16) + hash_bytes_per_slot;
+    const std::uint64_t in_one_piece = device_.description().largest_allocation_bytes / sizeof(Flux16);
+    const std::uint64_t room = std::min({device_.memory_left() / slot_bytes, in_one_piece, largest_map});
+    if (room < needed) return;
+    const auto wanted = static_cast<std::uint32_t>(std::min(needed + needed / 2, room));
+    if (builder_ != nullptr) builder_->reserve(wanted);
+    if (hash_ != nullptr) hash_->reserve(wanted);
+    const Buffer<PhotonHead> heads(device_, name_ + " map", wanted);
+    const Buffer<Flux16> flux(device_, name_ + " map flux", wanted);
+    heads_.copy_to(heads, used_);
+    flux_.copy_to(flux, used_);
+    heads_ = heads;
+    flux_ = flux;
+    capacity_ = wanted;
 }
 
 std::uint32_t PhotonMap::advance(std::uint32_t count) {

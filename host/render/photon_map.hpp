@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/device/device.hpp"
+#include "host/render/spatial_hash.hpp"
 #include "kernels/shared/photon.h"
 
 namespace stokes {
@@ -13,10 +14,13 @@ namespace stokes {
 // their paths, so that a slot depends on paths alone.
 class PhotonMap {
   public:
-    PhotonMap(const Device& device, const std::string& name, std::uint32_t capacity);
+    // builder, hash: what the map will be sorted with; they grow before it does. They outlive the map, or are null.
+    PhotonMap(const Device& device, const std::string& name, std::uint32_t capacity, HashBuilder* builder = nullptr,
+              SpatialHash* hash = nullptr);
 
     // Makes room for count more slots, by half as much again as is needed; keeps what is stored. Where the device's
-    // memory budget does not allow it, the capacity stays and kernels drop and count what does not fit.
+    // memory budget does not allow it, for the map and for its hash together, the capacity stays and kernels drop and
+    // count what does not fit.
     void reserve(std::uint32_t count);
 
     void clear() { used_ = 0; }
@@ -32,7 +36,8 @@ class PhotonMap {
     Device device_;
     std::string name_;
     std::uint32_t capacity_ = 0, used_ = 0;
-    bool full_ = false;
+    HashBuilder* builder_ = nullptr;
+    SpatialHash* hash_ = nullptr;
     Buffer<PhotonHead> heads_;
     Buffer<Flux16> flux_;
 };

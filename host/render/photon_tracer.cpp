@@ -73,16 +73,17 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
         std::swap(alive_, next_alive_);
         count = lists.alive;
     }
-    PhotonAccount account = close_account(photons);
-    account.rounds = event;
-    return account;
+    return close_account(photons);
 }
 
 // Sorts the arrived photons into the lists alive, diffuse, fluorescence, elastic; the rest has ended.
 ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t count,
                                     std::uint32_t event) {
     const std::uint32_t chunks = chunks_of(count);
-    classify_.launch(count, count, event, pass.constants, alive_, rays_, hits_, flux_, scene.triangles, scene.materials,
+    EventRound round{};
+    round.count = count;
+    round.event = event;
+    classify_.launch(count, round, pass.constants, alive_, rays_, hits_, flux_, scene.triangles, scene.materials,
                      scene.shapes, points_, ledgers_, kinds_);
     count_.launch(chunks, count, chunk_size, kinds_, chunk_counts_);
     scan_.launch(1, chunks, chunk_counts_, totals_);

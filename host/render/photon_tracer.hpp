@@ -29,8 +29,7 @@ struct PhotonAccount {
     std::uint64_t rays = 0;           // photon rays and probes
     std::uint64_t missed_exits = 0;   // deposits whose exit point found no surface
     std::uint64_t refused_slots = 0;  // deposits a full map had no slot for
-    std::uint64_t deposits = 0;       // slots handed out in all maps
-    std::uint64_t rounds = 0;         // of events
+    std::uint64_t deposits = 0;       // stored or refused, missed exits included
 };
 
 class PhotonTracer {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "host/core/error.hpp"
+#include "host/scene/mesh.hpp"
 
 namespace stokes {
 
@@ -15,15 +16,6 @@ constexpr double photons_per_disk = 20.0;
 
 // Edge of the tiles in which photons are counted [pixels].
 constexpr std::uint32_t tile_edge = 16;
-
-double surface_area_mm2(const Mesh& mesh) {
-    double area = 0.0;
-    for (const glm::uvec3& t : mesh.triangles) {
-        const glm::dvec3 a(mesh.positions_mm[t.x]), b(mesh.positions_mm[t.y]), c(mesh.positions_mm[t.z]);
-        area += 0.5 * glm::length(glm::cross(b - a, c - a));
-    }
-    return area;
-}
 
 }  // namespace
 
@@ -76,9 +68,9 @@ double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint
 double spread_radius_mm(const Scene& scene, std::int64_t photons) {
     double area = 0.0;
     for (const Shape& shape : scene.shapes)
-        if (shape.light < 0) area += surface_area_mm2(shape.mesh);
+        if (shape.light < 0) area += mesh_area_mm2(shape.mesh);
     if (area == 0.0)
-        for (const Shape& shape : scene.shapes) area += surface_area_mm2(shape.mesh);
+        for (const Shape& shape : scene.shapes) area += mesh_area_mm2(shape.mesh);
     const double extent = scene_extent(scene).half_diagonal_mm();
     area = std::min(area, 4.0 * M_PI * extent * extent);
     if (!(area > 0.0)) throw RunError(scene.file + ": the scene has no surface to store photons on");
@@ -89,11 +81,11 @@ SceneExtent scene_extent(const Scene& scene) {
     SceneExtent extent;
     extent.minimum = glm::dvec3(std::numeric_limits<double>::infinity());
     extent.maximum = -extent.minimum;
-    for (const Shape& shape : scene.shapes)
-        for (const glm::vec3& p : shape.mesh.positions_mm) {
-            extent.minimum = glm::min(extent.minimum, glm::dvec3(p));
-            extent.maximum = glm::max(extent.maximum, glm::dvec3(p));
-        }
+    for (const Shape& shape : scene.shapes) {
+        const Bounds bounds = mesh_bounds(shape.mesh);
+        extent.minimum = glm::min(extent.minimum, bounds.low_mm);
+        extent.maximum = glm::max(extent.maximum, bounds.high_mm);
+    }
     if (!(extent.minimum.x <= extent.maximum.x)) extent.minimum = extent.maximum = glm::dvec3(0.0);
     return extent;
 }

@@ -26,7 +26,7 @@ double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint
 // sphere, where that is smaller). RunError for a scene without surfaces.
 double spread_radius_mm(const Scene& scene, std::int64_t photons);
 
-// Half the diagonal of the scene's bounding box, and its centre [mm].
+// The scene's bounding box [mm]; a point at the origin for a scene without shapes.
 struct SceneExtent {
     glm::dvec3 minimum{0.0}, maximum{0.0};
     double half_diagonal_mm() const { return 0.5 * glm::length(maximum - minimum); }

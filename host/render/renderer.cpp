@@ -41,12 +41,9 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       photons_(checked_photons(scene)),
       pass_(make_pass_buffers(device, scene)),
       tracer_(device, photons_),
-      maps_{PhotonMap(device, "fluorescence", first_capacity(photons_)),
-            PhotonMap(device, "single scattering", first_capacity(photons_)),
-            PhotonMap(device, "multiple scattering", first_capacity(photons_)),
-            PhotonMap(device, "surface", first_capacity(photons_))},
       hash_builder_(device, first_capacity(photons_)),
       hash_(device, "photon map", first_capacity(photons_)),
+      maps_(make_maps()),
       view_(device, make_camera_record(scene.camera, scene.film.width, scene.film.height)),
       gather_(device, view_.camera()),
       resample_(Program(device, "resample_tables.cl").kernel("resample_table")),
@@ -59,9 +56,19 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     first_radius_mm_ = scene.render.radius_mm ? *scene.render.radius_mm : find_first_radius();
 }
 
-// By a trial pass that leaves nothing in the film.
+PhotonMaps Renderer::make_maps() {
+    const std::uint32_t capacity = first_capacity(photons_);
+    const auto map = [&](const char* name) { return PhotonMap(device_, name, capacity, &hash_builder_, &hash_); };
+    return {map("fluorescence"), map("single scattering"), map("multiple scattering"), map("surface")};
+}
+
+// By a trial pass that leaves nothing in the film. Its photons have the same flux at every wavelength: a lamp of few
+// wavelengths might be dark at all of those that were drawn.
 double Renderer::find_first_radius() {
-    prepare_pass(trial_pass, 1.0);
+    prepare_pass(trial_pass);
+    Flux16 even;
+    std::fill(std::begin(even.v), std::end(even.v), 1.0f);
+    pass_.photon_flux.upload(std::vector<Flux16>(scene_.lights.size(), even));
     for (PhotonMap& map : maps_) map.clear();
     tracer_.trace(on_device_, pass_, photons_, maps_);
     see_points();
@@ -80,7 +87,7 @@ double Renderer::radius_of(std::uint32_t pass) const {
 
 void Renderer::render_pass(std::uint32_t pass) {
     const double radius_mm = radius_of(pass);
-    prepare_pass(pass, radius_mm);
+    prepare_pass(pass);
     for (PhotonMap& map : maps_) map.clear();
     const PhotonAccount account = tracer_.trace(on_device_, pass_, photons_, maps_);
     see_points();
@@ -90,9 +97,9 @@ void Renderer::render_pass(std::uint32_t pass) {
 }
 
 // Draws the wavelengths and brings every spectrum and table onto them.
-void Renderer::prepare_pass(std::uint32_t pass, double radius_mm) {
+void Renderer::prepare_pass(std::uint32_t pass) {
     PassSpectra spectra = make_pass_spectra(scene_, on_device_.light_probability,
-                                            on_device_.light_surface_area_mm2, pass, photons_, radius_mm);
+                                            on_device_.light_surface_area_mm2, pass, photons_);
     spectra.constants.offset_mm = on_device_.offset_mm;
     pass_.constants.upload(&spectra.constants, 1);
     pass_.rows.upload(spectra.rows);
@@ -123,8 +130,6 @@ void Renderer::see_maps(double radius_mm) {
     for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
         const PhotonMap& map = maps_[m];
         if (map.used() == 0) continue;
-        hash_builder_.reserve(map.capacity());
-        hash_.reserve(map.capacity());
         hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
                             static_cast<float>(radius_mm));
         gather_.add_map(m, hash_, seen_scene(), pass_.constants, film_);

@@ -17,6 +17,9 @@ namespace stokes {
 
 class Renderer {
   public:
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
     // Uploads the scene and compiles the kernels. InputError for scenes that cannot be rendered (no power, too large
     // for the device's memory budget), RunError for device failures.
     Renderer(const Device& device, const Scene& scene);
@@ -35,8 +38,9 @@ class Renderer {
     double radius_of(std::uint32_t pass) const;                // [mm]
 
   private:
+    PhotonMaps make_maps();
     double find_first_radius();
-    void prepare_pass(std::uint32_t pass, double radius_mm);
+    void prepare_pass(std::uint32_t pass);
     void see_points();
     GatherScene seen_scene() const;
     void see_maps(double radius_mm);
@@ -48,9 +52,9 @@ class Renderer {
     double first_radius_mm_ = 0.0;
     PassBuffers pass_;
     PhotonTracer tracer_;
-    PhotonMaps maps_;
     HashBuilder hash_builder_;
     SpatialHash hash_;  // of one map at a time
+    PhotonMaps maps_;
     CameraView view_;
     Gather gather_;
     Kernel resample_, trace_;

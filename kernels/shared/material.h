@@ -13,16 +13,14 @@
 typedef struct ShapeRecord {
     unsigned int material;  // index into the MaterialRecord buffer
     unsigned int light;     // index of the light whose surface this is, or STOKES_NONE
-    unsigned int body;      // shapes of one body share subsurface light
-    unsigned int pad;
 } ShapeRecord;
-STOKES_ASSERT_SIZE(ShapeRecord, 16);
+STOKES_ASSERT_SIZE(ShapeRecord, 8);
 
 // Written by the host once per scene. A "row" is an index into the pass's spectra: one float16, the value at each
 // of the pass's wavelengths. Row i is the reflectance of material i.
 typedef struct MaterialRecord {
     unsigned int kind;             // STOKES_BLACK, STOKES_DIFFUSE or STOKES_TRANSLUCENT
-    unsigned int medium;           // index into the MediumTables buffer, or STOKES_NONE: no subsurface
+    unsigned int medium;           // index of its medium, the owner of three power tables, or STOKES_NONE: no subsurface
     float fluorescent_fraction;    // c in [0, 1]: probability of meeting a fluorophore
     float eta;                     // refractive index, for the refraction angle
     unsigned int excitation_row;   // of its fluorophore, or STOKES_NONE without one

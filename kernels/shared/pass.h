@@ -10,14 +10,12 @@ typedef struct PassConstants {
     // Radiance [W mm^-2 sr^-1 nm^-1] -> tristimulus values of the film [cd/m^2]: 683.002 lm/W * 1e6 mm^2/m^2 *
     // colour matching function at lambda * N/n (PHYSICS of the image estimator: N/n times the sum over the set).
     float to_x[16], to_y[16], to_z[16];
-    float spectral_weight_nm;  // N/n [nm]: sum over the set times this estimates the integral over wavelength
-    float radius_mm;           // radius of the density estimate in this pass
     unsigned int seed;         // of the whole render
     unsigned int pass;         // index of the pass, from 0
     unsigned int photons;      // photons emitted in this pass
     float offset_mm;           // rays start this far above the surface they leave
     float wavelengths;         // N: how many wavelengths the set was drawn from
-    unsigned int pad;
+    unsigned int pad0, pad1, pad2;
 } PassConstants;
 STOKES_ASSERT_SIZE(PassConstants, 288);
 

@@ -10,9 +10,12 @@
 #define STOKES_FATE_ESCAPED 2u       // left the scene
 #define STOKES_FATE_MISSED_EXIT 3u   // its exit point found no surface
 #define STOKES_FATE_MAP_FULL 4u      // no slot was left for its deposit
-#define STOKES_FATE_NOT_FINITE 5u    // its flux or position was not a number
+#define STOKES_FATE_OVERFLOW 5u      // its flux grew beyond STOKES_FLUX_LIMIT times what it started with
 #define STOKES_FATE_EVENT_LIMIT 6u   // the pass's limit of events was reached
 #define STOKES_FATE_COUNT 7u
+
+// Power tables above one can multiply light without end where it cannot leave; a path is cut at this multiple.
+#define STOKES_FLUX_LIMIT 1e6f
 
 // What happens at a hit. Written by classify_photons.
 #define STOKES_EVENT_NONE 0u
@@ -27,7 +30,7 @@ typedef struct PathLedger {
     float absorbed;
     float stokes_loss;  // taken up by a fluorophore and not re-emitted
     float escaped;
-    float dropped;      // cut off: missed exits, full maps
+    float dropped;      // cut off: missed exits, fluorescence without a slot, the limit of events, overflow
     float roulette;     // ended by Russian roulette minus what survivors were raised by; mean zero
     float created;      // made by power tables above one
     float stored;       // put into the maps

@@ -62,7 +62,7 @@ TEST_CASE("the photons of a light carry its flux in the mean", "[pass_spectra]")
     const Scene scene = spectral_scene();
     const std::vector<double> p = light_probabilities(scene);
     constexpr std::uint32_t photons = 10000;
-    const PassSpectra pass = make_pass_spectra(scene, p, area_mm2, 3, photons, 0.25);
+    const PassSpectra pass = make_pass_spectra(scene, p, area_mm2, 3, photons);
     const WavelengthSet set = draw_wavelengths(5, 3, 300, 780);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         for (std::size_t k = 0; k < set.size(); ++k) {
@@ -75,7 +75,7 @@ TEST_CASE("the photons of a light carry its flux in the mean", "[pass_spectra]")
 // A diffuse emitter of flux Phi and area A has radiance Phi / (pi A); nobody looks into a beam.
 TEST_CASE("the radiance of an emitter is its flux over pi and its area", "[pass_spectra]") {
     const Scene scene = spectral_scene();
-    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100, 0.25);
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100);
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
         const double lambda_nm = pass.constants.lambda_nm[k];
         const double flux = scene.lights[0].flux.at(lambda_nm);
@@ -90,7 +90,7 @@ TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
     scene.fluorophores.push_back(scene.fluorophores.front());
     scene.fluorophores.back().conversion = 0.05;
     const SpectraLayout layout(scene);
-    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 1, 100, 0.25);
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 1, 100);
     REQUIRE(pass.rows.size() == layout.row_count());
     const WavelengthSet set = draw_wavelengths(5, 1, 300, 780);
     const auto value = [&](std::uint32_t row, std::size_t k) {
@@ -113,15 +113,14 @@ TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
 
 TEST_CASE("the constants of a pass are its own", "[pass_spectra]") {
     const Scene scene = spectral_scene();
-    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 12345, 0.25);
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 12345);
     const WavelengthSet set = draw_wavelengths(5, 3, 300, 780);
     for (std::size_t k = 0; k < set.size(); ++k)
         CHECK(pass.constants.lambda_nm[k] == static_cast<float>(set[k]));
     CHECK(pass.constants.seed == 5);
     CHECK(pass.constants.pass == 3);
     CHECK(pass.constants.photons == 12345);
-    CHECK(pass.constants.radius_mm == 0.25f);
-    CHECK(pass.constants.spectral_weight_nm == 481.0f / 16.0f);
+    CHECK(pass.constants.wavelengths == 481.0f);
 }
 
 // xyz_of() sums over every nanometre of 300..830; light beyond 780 nm is not rendered, so the spectrum ends
@@ -132,7 +131,7 @@ TEST_CASE("the tristimulus weights of many passes give the colour of a spectrum"
     const std::vector<double> p = light_probabilities(scene);
     std::array<Sample, 3> xyz;
     for (std::uint32_t pass = 0; pass < 20000; ++pass) {
-        const PassConstants c = make_pass_spectra(scene, p, area_mm2, pass, 1, 1.0).constants;
+        const PassConstants c = make_pass_spectra(scene, p, area_mm2, pass, 1).constants;
         std::array<double, 3> sum{};
         for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
             const double per_mm2 = 1e-6 * radiance.at(c.lambda_nm[k]);

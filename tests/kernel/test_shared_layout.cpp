@@ -47,14 +47,14 @@ using namespace stokes;
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
         F(LightRecord, pad0) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, pad1) \
         F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, pad2) \
-    S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) F(ShapeRecord, body) F(ShapeRecord, pad) \
+    S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) \
     S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, medium) \
         F(MaterialRecord, fluorescent_fraction) F(MaterialRecord, eta) F(MaterialRecord, excitation_row) \
         F(MaterialRecord, reradiation_row) F(MaterialRecord, pad0) F(MaterialRecord, pad1) \
     S(PassConstants) F(PassConstants, lambda_nm) F(PassConstants, to_x) F(PassConstants, to_y) \
-        F(PassConstants, to_z) F(PassConstants, spectral_weight_nm) F(PassConstants, radius_mm) \
+        F(PassConstants, to_z) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
-        F(PassConstants, offset_mm) F(PassConstants, wavelengths) F(PassConstants, pad) \
+        F(PassConstants, offset_mm) F(PassConstants, wavelengths) F(PassConstants, pad0) F(PassConstants, pad1) F(PassConstants, pad2) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \
         F(PathLedger, stored) F(PathLedger, fate) F(PathLedger, missed_exits) F(PathLedger, rays) \
