@@ -36,9 +36,8 @@ __kernel void trace_any(uint n, __global const BvhNode* nodes, __global const Bv
 
 // Work-items: n. Reads: probes [n], reach_mm < 0: not traced; triangles of the scene, for their body.
 // Writes: hits [n]: on the line through the probe's point along its normal, within reach_mm to either side,
-// the
-//   nearest triangle of the probe's body whose outward normal lies on the probe normal's side. t is signed
-//   [mm], positive below the plane (along -normal); STOKES_NONE without a hit.
+// the nearest triangle of the probe's body whose outward normal lies on the probe normal's side. t is signed
+// [mm], positive below the plane (along -normal); STOKES_NONE without a hit.
 // Both searches start a little beyond the plane, so that a surface in the plane itself is found.
 __kernel void trace_probe(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks,
                           BvhGrid grid, __global const Triangle* triangles, __global const Probe* probes,
