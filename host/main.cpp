@@ -14,6 +14,23 @@ int report(const char* text, int code) {
     return code;
 }
 
+std::string subcommand_names(const CLI::App& app) {
+    std::string names;
+    for (const CLI::App* command : app.get_subcommands({}))
+        names += (names.empty() ? "" : ", ") + command->get_name();
+    return names;
+}
+
+// What CLI11 would say of a wrong word in a subcommand's place is that there is no subcommand.
+void check_subcommand(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2) throw stokes::InputError("expected a subcommand: " + subcommand_names(app));
+    const std::string word = argv[1];
+    for (const CLI::App* command : app.get_subcommands({}))
+        if (command->get_name() == word) return;
+    if (!word.empty() && word[0] == '-') return;
+    throw stokes::InputError("\"" + word + "\" is no subcommand; there are: " + subcommand_names(app));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -24,6 +41,7 @@ int main(int argc, char** argv) {
     stokes::add_tables_command(app);
     stokes::add_devices_command(app);
     try {
+        check_subcommand(app, argc, argv);
         app.parse(argc, argv);
         return stokes::interrupted_signal() == 0 ? 0 : 128 + stokes::interrupted_signal();
     } catch (const CLI::ParseError& error) {

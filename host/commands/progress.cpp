@@ -19,10 +19,9 @@ std::string clock_text(double seconds) {
     return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-std::string bar(double share) {
-    constexpr int width = 24;
-    const int full = static_cast<int>(share * width);
-    return std::string(static_cast<std::size_t>(full), '#') + std::string(static_cast<std::size_t>(width - full), '.');
+std::string bar(double share, std::size_t width) {
+    const auto full = std::min(static_cast<std::size_t>(share * static_cast<double>(width)), width);
+    return "[" + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
 std::size_t terminal_columns() {
@@ -32,10 +31,37 @@ std::size_t terminal_columns() {
 
 }  // namespace
 
+std::string progress_line(const ProgressState& state, std::size_t columns, bool with_bar) {
+    constexpr std::size_t shortest_bar = 4, longest_bar = 24, frame = 3;
+    const double share = static_cast<double>(state.passes_done) / state.passes;
+    const double remaining_s = share > 0.0 ? state.elapsed_s * (1.0 - share) / share : 0.0;
+    const double rate = static_cast<double>(state.photons) / std::max(state.elapsed_s, 1e-9) * 1e-6;
+    const std::string pass = fmt::format("pass {}/{}  ", state.passes_done, state.passes);
+    const std::string elapsed = fmt::format("elapsed {}  ", clock_text(state.elapsed_s));
+    const std::string remaining = "remaining " + clock_text(remaining_s);
+
+    const std::string whole = pass + fmt::format("{:.2f} M photons/s  ", rate) + elapsed + remaining;
+    if (with_bar && whole.size() + frame + shortest_bar <= columns)
+        return bar(share, std::min(longest_bar, columns - whole.size() - frame)) + whole;
+    for (const std::string& line : {whole, pass + elapsed + remaining, pass + remaining})
+        if (line.size() <= columns) return line;
+    return remaining.substr(0, columns);
+}
+
 Progress::Progress(std::uint32_t passes, bool quiet)
     : passes_(passes), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), last_(start_) {}
 
-double Progress::elapsed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+double Progress::elapsed_s() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+void Progress::preparing() {
+    if (!quiet_) show("preparing (compiling kernels ...)");
+}
+
+void Progress::start() {
+    last_ = start_ = Clock::now();
+}
 
 void Progress::update(std::uint32_t passes_done, std::uint64_t photons) {
     const auto now = Clock::now();
@@ -43,21 +69,15 @@ void Progress::update(std::uint32_t passes_done, std::uint64_t photons) {
     const double since = std::chrono::duration<double>(now - last_).count();
     if (quiet_ || (!last && since < (terminal_ ? 0.1 : 5.0))) return;
     last_ = now;
-    const double elapsed = elapsed_s();
-    const double share = static_cast<double>(passes_done) / passes_;
-    const double remaining = passes_done > 0 ? elapsed * (1.0 - share) / share : 0.0;
-    std::string line =
-        fmt::format("pass {}/{}  {:.2f} M photons/s  elapsed {}  remaining {}", passes_done, passes_,
-                    static_cast<double>(photons) / std::max(elapsed, 1e-9) * 1e-6, clock_text(elapsed), clock_text(remaining));
-    if (terminal_) {
-        line = "[" + bar(share) + "] " + line;
-        line.resize(std::min(line.size(), terminal_columns() - 1));
-        std::fprintf(stderr, "\r\033[K%s", line.c_str());
-        shown_ = true;
-    } else {
-        std::fprintf(stderr, "%s\n", line.c_str());
-    }
+    // The last column stays free: some terminals begin a new line after it. A file has all the room.
+    const std::size_t columns = terminal_ ? terminal_columns() - 1 : std::string::npos;
+    show(progress_line({passes_done, passes_, photons, elapsed_s()}, columns, terminal_));
+}
+
+void Progress::show(const std::string& line) {
+    std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", line.c_str());
     std::fflush(stderr);
+    shown_ = terminal_;
 }
 
 void Progress::finish() {

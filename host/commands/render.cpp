@@ -2,10 +2,11 @@
 
 #include <chrono>
 #include <csignal>
-#include <filesystem>
 #include <memory>
 
 #include "host/commands/commands.hpp"
+#include "host/commands/number_in.hpp"
+#include "host/commands/outputs.hpp"
 #include "host/commands/progress.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
@@ -48,22 +49,12 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--size")) {
         char rest = 0;
         int width = 0, height = 0;
-        if (std::sscanf(options.size.c_str(), "%5dx%5d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
-            width > 16384 || height > 16384)
-            throw InputError("--size: expected WIDTHxHEIGHT in pixels, each 1 to 16384, got \"" + options.size + "\"");
+        if (std::sscanf(options.size.c_str(), "%5dx%5d%c", &width, &height, &rest) != 2 || width < 1 ||
+            height < 1 || width > 16384 || height > 16384)
+            throw InputError("--size: expected WIDTHxHEIGHT in pixels, each 1 to 16384, got \"" +
+                             options.size + "\"");
         scene.film.width = width;
         scene.film.height = height;
-    }
-}
-
-// An output that cannot be written is found out before the render, not after it.
-void check_outputs(const RenderOptions& options) {
-    for (const std::string& file : {options.exr_file, options.png_file, options.stats_file}) {
-        if (file.empty()) continue;
-        const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-        if (!std::filesystem::is_directory(folder))
-            throw InputError(file + ": expected an existing folder, " + folder.string() + " is none");
-        if (std::filesystem::is_directory(file)) throw InputError(file + ": expected a file to write, this is a folder");
     }
 }
 
@@ -110,82 +101,124 @@ void say_what_was_dropped(const RenderStats& stats) {
     for (const auto& [cause, count] : stats.dropped)
         if (count > 0) causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", count, cause);
     if (!causes.empty())
-        fmt::print(stderr, "dropped: {} of {} deposits and {} photons\n", causes, stats.deposits, stats.photons_emitted);
+        fmt::print(stderr, "dropped: {} of {} deposits and {} photons\n", causes, stats.deposits,
+                   stats.photons_emitted);
 }
 
-void write_pictures(const RenderOptions& options, const Scene& scene, const FilmImage& film, const RenderStats& stats) {
+void write_results(const RenderOptions& options, const Scene& scene, const FilmImage& film,
+                   const RenderStats& stats) {
     if (const std::size_t bad = count_non_finite(film))
         warn(fmt::format("{} pixels are not finite and are shown black", bad));
     const double exposure = scene.film.exposure_ev ? *scene.film.exposure_ev : automatic_exposure_ev(film);
-    if (!options.exr_file.empty()) write_exr(options.exr_file, film, exr_metadata(scene, stats, exposure));
-    if (!options.png_file.empty())
+    const auto write_picture = [&] {
+        write_exr(options.exr_file, film, exr_metadata(scene, stats, exposure));
+    };
+    const auto write_developed = [&] {
         write_png(options.png_file, develop(film, exposure), {{"Software", "stokes " STOKES_VERSION}});
-    if (!options.stats_file.empty()) write_stats(stats, options.stats_file);
-    if (!options.quiet)
-        for (const std::string& file : {options.exr_file, options.png_file, options.stats_file})
-            if (!file.empty()) fmt::print("{}\n", file);
+    };
+    const auto write_figures = [&] { write_stats(stats, options.stats_file); };
+    write_outputs({{options.exr_file, write_picture},
+                   {options.png_file, write_developed},
+                   {options.stats_file, write_figures}},
+                  options.quiet);
+}
+
+Device open_device(const RenderOptions& options) {
+    Device device = Device::open(options.device, options.threads);
+    device.set_kernel_directory(options.kernel_directory);
+    if (options.max_memory_gib > 0.0)
+        device.set_memory_budget(static_cast<std::uint64_t>(options.max_memory_gib * (1 << 30)));
+    return device;
+}
+
+// None when a signal came meanwhile.
+std::unique_ptr<Renderer> set_up(Device& device, const Scene& scene) {
+    device.set_stop([] { return caught_signal != 0; });
+    try {
+        auto renderer = std::make_unique<Renderer>(device, scene);
+        device.finish();
+        device.set_stop({});  // a pass that has begun is finished
+        return renderer;
+    } catch (const Interrupted&) {
+        return nullptr;
+    }
+}
+
+void render_passes(Renderer& renderer, const Device& device, int passes, Progress& progress) {
+    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(passes) && caught_signal == 0; ++pass) {
+        renderer.render_pass(pass);
+        device.finish();
+        progress.update(pass + 1, renderer.book().photons());
+    }
+    progress.finish();
 }
 
 void render(const CLI::App& command, const RenderOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     if (options.exr_file.empty() && options.png_file.empty() && options.stats_file.empty())
         throw InputError("render: expected an output, -o OUT.exr, --png OUT.png or --stats FILE.json");
-    check_outputs(options);
+    check_outputs({options.exr_file, options.png_file, options.stats_file}, options.scene_file);
     Scene scene = read_scene(options.scene_file);
     apply(command, options, scene);
-    Device device = Device::open(options.device, options.threads);
-    device.set_kernel_directory(options.kernel_directory);
-    if (options.max_memory_gib > 0.0)
-        device.set_memory_budget(static_cast<std::uint64_t>(options.max_memory_gib * (1 << 30)));
     std::signal(SIGINT, catch_signal);
     std::signal(SIGTERM, catch_signal);
-    Renderer renderer(device, scene);
-    device.finish();
-
-    const double set_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    Device device = open_device(options);
     Progress progress(static_cast<std::uint32_t>(scene.render.passes), options.quiet);
-    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(scene.render.passes) && caught_signal == 0; ++pass) {
-        renderer.render_pass(pass);
-        device.finish();
-        progress.update(pass + 1, renderer.book().photons());
-    }
-    progress.finish();
+    progress.preparing();
+    const std::unique_ptr<Renderer> renderer = set_up(device, scene);
+    const double set_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    progress.start();
+    if (renderer) render_passes(*renderer, device, scene.render.passes, progress);
     const double wall_s = progress.elapsed_s();
-    if (renderer.passes() == 0) return;
-    const FilmImage film = renderer.image();
-    RenderStats stats = collect_stats(scene, device, renderer);
+    if (!renderer || renderer->passes() == 0) {
+        progress.finish();
+        fmt::print(stderr, "stokes: interrupted before the first pass: nothing was written\n");
+        return;
+    }
+    const FilmImage film = renderer->image();
+    RenderStats stats = collect_stats(scene, device, *renderer);
     stats.wall_s = wall_s;
     stats.set_up_s = set_up_s;
     if (!options.quiet) say_what_was_dropped(stats);
-    write_pictures(options, scene, film, stats);
+    write_results(options, scene, film, stats);
 }
 
 }  // namespace
 
-int interrupted_signal() { return caught_signal; }
+int interrupted_signal() {
+    return caught_signal;
+}
 
 void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Render a scene");
     const auto options = std::make_shared<RenderOptions>();
     command->add_option("scene", options->scene_file, "Scene file")->required()->type_name("SCENE.json");
-    command->add_option("-o,--output", options->exr_file, "OpenEXR picture, one layer a component")->type_name("OUT.exr");
+    command->add_option("-o,--output", options->exr_file, "OpenEXR picture, one layer a component")
+        ->type_name("OUT.exr");
     command->add_option("--png", options->png_file, "Picture for the screen")->type_name("OUT.png");
     command->add_option("--stats", options->stats_file, "Figures of the render")->type_name("FILE.json");
     command->add_option("--passes", options->passes, "Passes")->check(CLI::Range(1, 100000000));
-    command->add_option("--photons", options->photons, "Photons per pass")->check(CLI::Range(1, 0x10000000));
+    command->add_option("--photons", options->photons, "Photons per pass")
+        ->check(number_in(1, static_cast<double>(most_photons_per_pass)));
     command->add_option("--size", options->size, "Picture size in pixels")->type_name("WxH");
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
-        ->check(CLI::Range(1e-6, 1.0));
+        ->check(number_in(1e-6, 1.0));
     command->add_option("--radius", options->radius_mm, "First radius of the density estimate [mm]")
-        ->check(CLI::Range(1e-6, 1e9));
-    command->add_option("--exposure", options->exposure_ev, "Exposure of the PNG; default: automatic")->type_name("EV");
+        ->check(number_in(1e-6, 1e7));
+    command->add_option("--exposure", options->exposure_ev, "Exposure of the PNG; default: automatic")
+        ->type_name("EV")
+        ->check(number_in(-100.0, 100.0));
     command->add_option("--device", options->device, "platform:device, part of a name, cpu or gpu");
-    command->add_option("--threads", options->threads, "CPU threads; default: all")->check(CLI::Range(1, 4096));
-    command->add_option("--max-memory", options->max_memory_gib, "Device memory to use at most; default: 3/4 of it")
+    command->add_option("--threads", options->threads, "CPU threads; default: all")
+        ->check(CLI::Range(1, 4096));
+    command
+        ->add_option("--max-memory", options->max_memory_gib,
+                     "Device memory to use at most; default: 3/4 of it")
         ->type_name("GiB")
-        ->check(CLI::Range(1e-3, 1e6));
-    command->add_option("--kernel-dir", options->kernel_directory, "Read the kernels from here, for development")
+        ->check(number_in(1e-3, 1e6));
+    command
+        ->add_option("--kernel-dir", options->kernel_directory, "Read the kernels from here, for development")
         ->check(CLI::ExistingDirectory);
     command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
     command->callback([command, options] { render(*command, *options); });

@@ -68,17 +68,27 @@ void flush_folder(const fs::path& folder) {
     ::close(descriptor);
 }
 
+// The file that writing to path replaces: what a symbolic link leads to.
+fs::path target_of(const std::string& path) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    if (!fs::exists(status)) return path;
+    if (!fs::is_regular_file(status)) fail(path, "not a regular file");
+    return fs::canonical(path, ignored);
+}
+
 }  // namespace
 
 void write_file_atomically(const std::string& path, std::string_view content) {
-    std::error_code ignored;
-    const fs::file_status status = fs::status(path, ignored);
-    if (fs::exists(status) && !fs::is_regular_file(status)) fail(path, "not a regular file");
-    const fs::path target = fs::exists(status) ? fs::canonical(path, ignored) : fs::path(path);
+    const fs::path target = target_of(path);
     Temporary temporary(target.string(), path);
     temporary.write(content);
     temporary.become_target();
     flush_folder(target.parent_path());
+}
+
+void check_can_be_written(const std::string& path) {
+    const Temporary temporary(target_of(path).string(), path);
 }
 
 }  // namespace stokes

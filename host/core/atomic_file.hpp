@@ -12,4 +12,7 @@ namespace stokes {
 // file.
 void write_file_atomically(const std::string& path, std::string_view content);
 
+// Throws RunError, as write_file_atomically(path, ...) would, where PATH.tmp cannot be made; leaves no file.
+void check_can_be_written(const std::string& path);
+
 }  // namespace stokes

@@ -17,4 +17,9 @@ struct RunError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// The person at the terminal wants no more. Exit code 128 + the signal.
+struct Interrupted : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 }  // namespace stokes

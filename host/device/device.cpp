@@ -1,12 +1,12 @@
 #include "host/device/device.hpp"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 
-#include "host/core/log.hpp"
+#include "host/device/pocl.hpp"
+#include "host/device/signals.hpp"
 
 namespace stokes {
 
@@ -20,49 +20,6 @@ std::string lower(std::string text) {
 std::string trimmed(std::string text) {
     while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
     return text;
-}
-
-// PoCL dies with a signal when its kernel cache cannot be written, so that is found out first.
-void prepare_pocl_cache() {
-    const auto writable = [](const std::string& directory) {
-        return ::access(directory.c_str(), W_OK | X_OK) == 0;
-    };
-    std::string directory;
-    if (const char* chosen = ::getenv("POCL_CACHE_DIR")) {
-        directory = chosen;
-    } else if (const char* cache = ::getenv("XDG_CACHE_HOME")) {
-        directory = std::string(cache);
-    } else if (const char* home = ::getenv("HOME")) {
-        directory = std::string(home);
-        if (writable(directory + "/.cache")) directory += "/.cache";
-        if (writable(directory + "/pocl")) directory += "/pocl";
-    }
-    if (!directory.empty() && writable(directory)) return;
-    const char* temporary = ::getenv("TMPDIR");
-    std::string pattern = std::string(temporary && *temporary ? temporary : "/tmp") + "/stokes-pocl-XXXXXX";
-    if (::mkdtemp(pattern.data()) == nullptr)
-        throw RunError(pattern + ": no folder for compiled kernels can be made");
-    ::setenv("POCL_CACHE_DIR", pattern.c_str(), 1);
-    warn("the folder for compiled kernels, " + (directory.empty() ? "$HOME" : directory) +
-         ", cannot be written; this run compiles into " + pattern);
-}
-
-// A name PoCL does not know in POCL_DEVICES ends the process with a signal.
-void check_pocl_devices() {
-    const char* chosen = ::getenv("POCL_DEVICES");
-    if (chosen == nullptr || *chosen == '\0') return;
-    std::string word;
-    for (const char* c = chosen;; ++c) {
-        if (*c != ' ' && *c != '\0') {
-            word += *c;
-            continue;
-        }
-        if (!word.empty() && word != "pthread" && word != "basic" && word != "cuda" && word != "ttasim")
-            throw InputError("POCL_DEVICES: \"" + word +
-                             "\" is not a PoCL device; expected pthread or basic");
-        word.clear();
-        if (*c == '\0') return;
-    }
 }
 
 struct Found {
@@ -91,6 +48,7 @@ DeviceDescription describe(const cl::Platform& platform, const cl::Device& devic
 std::vector<Found> find_devices() {
     check_pocl_devices();
     prepare_pocl_cache();
+    const SignalsHeldBack held_back;  // also in the driver's threads, which begin here and compile later
     std::vector<Found> result;
     try {
         std::vector<cl::Platform> platforms;

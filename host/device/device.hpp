@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -66,10 +67,20 @@ class Device {
     void reset_stage_times();
     void record(const std::string& kernel_name, const cl::Event& event);
 
+    // Asked before every build and launch until it is set again or emptied; once it says true they throw
+    // Interrupted.
+    void set_stop(std::function<bool()> stop) { shared_->stop = std::move(stop); }
+    void check_stop() const {
+        if (shared_->stop && shared_->stop()) throw Interrupted("interrupted");
+    }
+
     // Memory budget [bytes] for all buffers together; allocation above it is an InputError that names the
     // buffer.
     void set_memory_budget(std::uint64_t bytes) { shared_->memory_budget = bytes; }
     std::uint64_t memory_in_use() const { return shared_->memory_in_use; }
+    std::uint64_t memory_left() const {
+        return shared_->memory_budget - std::min(shared_->memory_in_use, shared_->memory_budget);
+    }
 
   private:
     friend class Allocation;
@@ -80,6 +91,7 @@ class Device {
         cl::CommandQueue queue;
         std::string kernel_directory;
         std::size_t local_size = 64;
+        std::function<bool()> stop;
         std::uint64_t memory_budget = 0, memory_in_use = 0;
         std::map<std::string, StageTime> stage_times;
         std::vector<std::pair<std::string, cl::Event>> pending;

@@ -1,4 +1,5 @@
 #include "host/device/device.hpp"
+#include "host/device/signals.hpp"
 
 namespace stokes {
 
@@ -17,9 +18,11 @@ Program Program::from_source(const Device& device, const std::string& name, cons
 void Program::build(const std::string& name, const std::string& text,
                     const std::vector<std::string>& options) {
     file_ = name;
+    device_.check_stop();
     std::string flags = "-cl-std=CL1.2";
     for (const std::string& option : options) flags += " " + option;
     const std::string source = expand_kernel_source(name, text, device_.kernel_directory());
+    const SignalsHeldBack held_back;
     try {
         program_ = cl::Program(device_.context(), source);
         program_.build(flags.c_str());
@@ -56,6 +59,8 @@ void Kernel::set_bytes(cl_uint index, std::size_t bytes, const void* data) {
 void Kernel::enqueue(std::size_t work_items) {
     const std::size_t local = device_.local_size();
     const std::size_t global = (work_items + local - 1) / local * local;
+    device_.check_stop();
+    const SignalsHeldBack held_back;  // a first launch compiles
     try {
         cl::Event event;
         device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(global), cl::NDRange(local),

@@ -1,37 +1,13 @@
 #include "host/image/colour.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <sstream>
-#include <string_view>
-#include <vector>
 
+#include "host/core/csv_table.hpp"
 #include "host/core/embedded.hpp"
 #include "host/core/error.hpp"
 
 namespace stokes {
 namespace {
-
-std::vector<std::string_view> split(std::string_view line) {
-    std::vector<std::string_view> fields;
-    for (;;) {
-        const std::size_t comma = line.find(',');
-        fields.push_back(line.substr(0, comma));
-        if (comma == std::string_view::npos) return fields;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-double number(std::string_view text, const std::string& file, int line) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size())
-        throw InputError(fmt::format("{}:{}: expected a number, found \"{}\"", file, line, text));
-    return value;
-}
 
 // Columns are the XYZ of a primary of luminance 1 at chromaticity (x, y).
 glm::dvec3 at_chromaticity(double x, double y) {
@@ -64,27 +40,7 @@ Spectrum cie_spectrum(const std::string& file, const std::string& column) {
     const std::string path = "tables/cie/" + file;
     const auto found = embedded_files().find(path);
     if (found == embedded_files().end()) throw InputError(path + ": no such table in this program");
-
-    Spectrum spectrum;
-    std::istringstream text(found->second);
-    std::string line;
-    std::size_t wanted = 0;
-    for (int line_number = 1; std::getline(text, line); ++line_number) {
-        if (line.empty() || line[0] == '#') continue;
-        const std::vector<std::string_view> fields = split(line);
-        if (wanted == 0) {
-            wanted =
-                static_cast<std::size_t>(std::find(fields.begin(), fields.end(), column) - fields.begin());
-            if (wanted == 0 || wanted == fields.size())
-                throw InputError(fmt::format("{}:{}: no column \"{}\"", path, line_number, column));
-            continue;
-        }
-        if (fields.size() <= wanted)
-            throw InputError(fmt::format("{}:{}: expected {} fields", path, line_number, wanted + 1));
-        spectrum.lambda_nm.push_back(number(fields[0], path, line_number));
-        spectrum.value.push_back(number(fields[wanted], path, line_number));
-    }
-    return spectrum;
+    return csv_spectrum(parse_csv(found->second, path), column, Outside::zero);
 }
 
 const ColourMatching& cie1931() {

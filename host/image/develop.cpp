@@ -48,6 +48,8 @@ double shoulder(double value) {
 }
 
 std::uint8_t to_byte(double linear) {
+    if (!(linear > 0.0)) return 0;  // NaN as well: an exposure that is none
+    if (linear >= 1.0) return 255;
     return static_cast<std::uint8_t>(std::floor(255.0 * srgb_encode(linear) + 0.5));
 }
 

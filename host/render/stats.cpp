@@ -5,23 +5,11 @@
 #include <cmath>
 
 #include "host/core/atomic_file.hpp"
+#include "host/core/json_text.hpp"
 
 namespace stokes {
 
 namespace {
-
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\')
-            result += std::string("\\") + c;
-        else if (static_cast<unsigned char>(c) < 0x20)
-            result += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else
-            result += c;
-    }
-    return result + "\"";
-}
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 std::string number(std::uint64_t value) { return std::to_string(value); }
@@ -30,7 +18,7 @@ template <class T>
 std::string object(const std::map<std::string, T>& entries) {
     std::string result;
     for (const auto& [name, value] : entries)
-        result += fmt::format("{}\n    {}: {}", result.empty() ? "" : ",", quoted(name), number(value));
+        result += fmt::format("{}\n    {}: {}", result.empty() ? "" : ",", json_quoted(name), number(value));
     return "{" + result + "\n  }";
 }
 
@@ -49,11 +37,11 @@ void write_stats(const RenderStats& s, const std::string& path) {
     const auto rate = [&](std::uint64_t count) { return s.wall_s > 0.0 ? static_cast<double>(count) / s.wall_s : 0.0; };
     std::string text = "{\n";
     const auto add = [&](const char* key, const std::string& value) {
-        text += fmt::format("{}  {}: {}", text.size() > 2 ? ",\n" : "", quoted(key), value);
+        text += fmt::format("{}  {}: {}", text.size() > 2 ? ",\n" : "", json_quoted(key), value);
     };
-    add("scene", quoted(s.scene));
-    add("device", quoted(s.device));
-    add("driver", quoted(s.driver));
+    add("scene", json_quoted(s.scene));
+    add("device", json_quoted(s.device));
+    add("driver", json_quoted(s.driver));
     add("passes", number(std::uint64_t{s.passes}));
     add("seed", number(std::uint64_t{s.seed}));
     add("width", std::to_string(s.width));

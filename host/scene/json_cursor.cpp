@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "host/core/error.hpp"
-#include "host/scene/text_input.hpp"
+#include "host/core/text_input.hpp"
 
 namespace stokes {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/core/error.hpp"
-#include "host/scene/text_input.hpp"
+#include "host/core/text_input.hpp"
 
 namespace stokes {
 namespace {

@@ -53,8 +53,9 @@ Spectrum with_total(const JsonCursor& light, const Spectrum& spectrum, double to
     const double factor = total / sum;
     if (!(sum > 0.0) || !std::isfinite(factor)) {
         light.at("spectrum")
-            .fail(fmt::format("expected some light from {} to {} nm, got none", render.lambda_min_nm,
-                              render.lambda_max_nm));
+            .fail(fmt::format(
+                "expected some light from {} to {} nm, got {}", render.lambda_min_nm, render.lambda_max_nm,
+                sum > 0.0 ? fmt::format("a sum of only {:g}", sum) : "none at any whole nanometre"));
     }
     return spectrum.scaled(factor);
 }
@@ -115,9 +116,9 @@ glm::dmat4 placed(const Frame& frame, const glm::dvec3& center_mm) {
             glm::dvec4(center_mm, 1)};
 }
 
-Mesh read_emitter_mesh(const JsonCursor& where, std::size_t type) {
+// The emitter's mesh about the origin; transform: to its place.
+Mesh read_emitter_mesh(const JsonCursor& where, std::size_t type, glm::dmat4& transform) {
     Mesh mesh;
-    glm::dmat4 transform(1.0);
     if (type == 1) {
         where.expect_keys(keys::emitter_rectangle);
         transform = placed(read_frame(where, "normal"), where.at("center_mm").vector());
@@ -131,19 +132,19 @@ Mesh read_emitter_mesh(const JsonCursor& where, std::size_t type) {
         transform[3] = glm::dvec4(where.at("center_mm").vector(), 1.0);
         mesh = make_sphere(length(where, "radius_mm"));
     }
-    transform_mesh(mesh, transform);
     return mesh;
 }
 
 Light read_emitter(const JsonCursor& where, std::size_t type, SpectrumReader& spectra, Scene& scene) {
     Shape shape;
-    shape.mesh = read_emitter_mesh(where, type);
+    glm::dmat4 transform(1.0);
+    shape.mesh = read_emitter_mesh(where, type, transform);
     shape.material = emitter_material(where, scene);
     shape.body = scene.body_count++;
     shape.light = static_cast<int>(scene.lights.size());
     Light light;
     light.kind = LightKind::surface;
-    light.shape = add_shape(where, std::move(shape), scene);
+    light.shape = add_shape(where, std::move(shape), transform, scene);
     const double area_mm2 = mesh_area_mm2(scene.shapes.back().mesh);
     const Spectrum spectrum = spectra.read(where.at("spectrum"), Outside::zero);
     light.flux = emitter_flux(where, spectrum, area_mm2, scene.render);

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include "host/core/log.hpp"
+#include "host/core/media_limits.hpp"
+
 namespace stokes {
 namespace {
 
 constexpr NumberRange eta_range{1.0, 5.0};
+constexpr NumberRange dipole_eta_range{1.0, largest_dipole_eta};
+constexpr NumberRange sigma_t_range{smallest_sigma_t_per_mm, largest_sigma_t_per_mm};
 constexpr NumberRange scale_range{0.0, 1e6};
 constexpr NumberRange unit_range{0.0, 1.0};
-// Where the renderer may ask for a medium's coefficients.
+// Where the renderer may ask for spectra.
 constexpr int first_lambda_nm = 300;
 constexpr int last_lambda_nm = 830;
 
@@ -21,14 +26,37 @@ Medium read_medium(const std::string& name, const JsonCursor& where, SpectrumRea
     medium.sigma_a = spectra.read(where.at("sigma_a_per_mm"), Outside::hold)
                          .scaled(where.number_or("scale_sigma_a", 1.0, scale_range));
     medium.eta = where.number_or("eta", 1.0, eta_range);
-    medium.dipole_eta = where.number_or("dipole_eta", 1.0, eta_range);
+    medium.dipole_eta = where.number_or("dipole_eta", 1.0, dipole_eta_range);
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
-        if (sigma_t > 0.0) continue;
-        where.fail(fmt::format("expected sigma_s + sigma_a above zero from {} to {} nm, got {} at {} nm",
-                               first_lambda_nm, last_lambda_nm, sigma_t, lambda));
+        if (sigma_t_range.contains(sigma_t)) continue;
+        where.fail(fmt::format("expected sigma_s + sigma_a {} 1/mm from {} to {} nm, got {} at {} nm",
+                               sigma_t_range.text(), first_lambda_nm, last_lambda_nm, sigma_t, lambda));
     }
     return medium;
+}
+
+Fluorophore read_fluorophore(const std::string& name, const JsonCursor& where, SpectrumReader& spectra) {
+    where.expect_keys(keys::fluorophore);
+    Fluorophore fluorophore;
+    fluorophore.name = name;
+    fluorophore.excitation = spectra.read(where.at("excitation"), Outside::zero, 1.0);
+    fluorophore.emission = spectra.read(where.at("emission"), Outside::zero, 1.0);
+    fluorophore.conversion = where.number_or("conversion_per_nm", fluorophore.conversion, unit_range);
+    const double emission_sum = fluorophore.emission.sum_1nm(first_lambda_nm, last_lambda_nm);
+    if (!(emission_sum > 0.0)) {
+        where.at("emission")
+            .fail(fmt::format("expected some emission from {} to {} nm, got none at any whole nanometre",
+                              first_lambda_nm, last_lambda_nm));
+    }
+    const double yield = fluorophore.conversion * emission_sum;
+    if (yield > 1.0) {
+        warn(
+            fmt::format("{}: {}: emits up to {:.3g} times what it takes up (conversion_per_nm times the sum "
+                        "of its emission)",
+                        where.file(), where.path(), yield));
+    }
+    return fluorophore;
 }
 
 Material read_diffuse(const JsonCursor& where, SpectrumReader& spectra) {
@@ -76,15 +104,8 @@ std::vector<Medium> read_media(const JsonCursor& media, SpectrumReader& spectra)
 
 std::vector<Fluorophore> read_fluorophores(const JsonCursor& fluorophores, SpectrumReader& spectra) {
     std::vector<Fluorophore> result;
-    for (const auto& [name, where] : fluorophores.named_members()) {
-        where.expect_keys(keys::fluorophore);
-        Fluorophore fluorophore;
-        fluorophore.name = name;
-        fluorophore.excitation = spectra.read(where.at("excitation"), Outside::zero, 1.0);
-        fluorophore.emission = spectra.read(where.at("emission"), Outside::zero, 1.0);
-        fluorophore.conversion = where.number_or("conversion_per_nm", fluorophore.conversion, unit_range);
-        result.push_back(std::move(fluorophore));
-    }
+    for (const auto& [name, where] : fluorophores.named_members())
+        result.push_back(read_fluorophore(name, where, spectra));
     return result;
 }
 

@@ -86,6 +86,12 @@ void transform_mesh(Mesh& mesh, const glm::dmat4& transform) {
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
 }
 
+std::size_t count_degenerate_triangles(const Mesh& mesh) {
+    return static_cast<std::size_t>(
+        std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                      [&](const glm::uvec3& t) { return is_degenerate(mesh, t); }));
+}
+
 std::size_t drop_degenerate_triangles(Mesh& mesh) {
     const std::size_t before = mesh.triangles.size();
     mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(),

@@ -24,6 +24,9 @@ double mesh_volume_mm3(const Mesh& mesh);
 // what was outside stays outside.
 void transform_mesh(Mesh& mesh, const glm::dmat4& transform);
 
+// Triangles whose normal cannot be found in single precision.
+std::size_t count_degenerate_triangles(const Mesh& mesh);
+
 // Drops the triangles whose normal cannot be found in single precision, and the vertices that no triangle
 // uses. Returns the number of triangles dropped.
 std::size_t drop_degenerate_triangles(Mesh& mesh);

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "host/core/error.hpp"
+#include "host/core/text_input.hpp"
 #include "host/scene/mesh_reader.hpp"
-#include "host/scene/text_input.hpp"
 
 namespace stokes {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/text_input.hpp"
+#include "host/core/text_input.hpp"
 
 namespace stokes {
 

@@ -28,6 +28,8 @@ struct Film {
 // Which subsurface transport the scene's translucent materials use.
 enum class Transport { paper };
 
+inline constexpr std::int64_t most_photons_per_pass = 0x10000000;
+
 struct RenderSettings {
     int passes = 64;
     std::int64_t photons_per_pass = 262144;

@@ -1,19 +1,26 @@
 #include "host/scene/scene_reader.hpp"
 
 #include <filesystem>
+#include <new>
 
+#include "host/core/error.hpp"
+#include "host/core/text_input.hpp"
 #include "host/scene/json_cursor.hpp"
 #include "host/scene/light_reader.hpp"
 #include "host/scene/material_reader.hpp"
 #include "host/scene/settings_reader.hpp"
 #include "host/scene/shape_reader.hpp"
 #include "host/scene/spectrum_reader.hpp"
-#include "host/scene/text_input.hpp"
 
 namespace stokes {
 
 Scene read_scene(const std::string& path) {
-    return parse_scene(read_file(path), path);
+    const std::string text = read_file(path);
+    try {
+        return parse_scene(text, path);
+    } catch (const std::bad_alloc&) {
+        throw InputError(path + ": this scene is too large for the memory");
+    }
 }
 
 Scene parse_scene(std::string_view text, const std::string& path) {

@@ -16,7 +16,7 @@ RenderSettings read_render_settings(const JsonCursor& render) {
     render.expect_keys(keys::render);
     RenderSettings s;
     s.passes = static_cast<int>(render.integer_or("passes", s.passes, 1, 100'000'000));
-    s.photons_per_pass = render.integer_or("photons_per_pass", s.photons_per_pass, 1, 1'000'000'000);
+    s.photons_per_pass = render.integer_or("photons_per_pass", s.photons_per_pass, 1, most_photons_per_pass);
     s.alpha = render.number_or("alpha", s.alpha, {0.0, 1.0, true});
     if (const auto radius = render.find("radius_mm")) s.radius_mm = radius->number(length_range);
     s.seed = static_cast<std::uint32_t>(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
+#include <new>
 
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
@@ -75,6 +76,8 @@ class MeshFiles {
             return meshes_.emplace(path, read_mesh(path)).first->second;
         } catch (const InputError& error) {
             file.fail(error.what());
+        } catch (const std::bad_alloc&) {
+            file.fail(path + ": this mesh is too large for the memory");
         }
     }
 
@@ -133,6 +136,15 @@ int read_body(const JsonCursor& shape, int material, Scene& scene, std::map<std:
     return entry->second;
 }
 
+constexpr const char* too_small = "too small for single precision at this distance from the origin";
+
+void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count,
+                       const char* what) {
+    if (count == 0) return;
+    warn(fmt::format("{}: {} ({}): left out {} triangle{} {}", where.file(), where.path(), name, count,
+                     count == 1 ? "" : "s", what));
+}
+
 }  // namespace
 
 void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene) {
@@ -146,12 +158,13 @@ void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, 
         names.push_back(shape.name);
         shape.material = index_of_name(where.at("material"), "materials", scene.materials);
         shape.body = read_body(where, shape.material, scene, bodies);
-        transform_mesh(shape.mesh, read_transform(where));
-        add_shape(where, std::move(shape), scene);
+        add_shape(where, std::move(shape), read_transform(where), scene);
     }
 }
 
-int add_shape(const JsonCursor& where, Shape shape, Scene& scene) {
+int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform, Scene& scene) {
+    const std::size_t flat_before = count_degenerate_triangles(shape.mesh);
+    transform_mesh(shape.mesh, transform);
     for (const glm::vec3& position : shape.mesh.positions_mm) {
         for (int axis = 0; axis < 3; ++axis) {
             if (coordinate_range.contains(position[axis])) continue;
@@ -160,11 +173,13 @@ int add_shape(const JsonCursor& where, Shape shape, Scene& scene) {
         }
     }
     const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
-    if (shape.mesh.triangles.empty()) where.fail("expected a triangle with an area, found none");
-    if (dropped > 0) {
-        warn(fmt::format("{}: {} ({}): left out {} triangle{} without area", where.file(), where.path(),
-                         shape.name, dropped, dropped == 1 ? "" : "s"));
+    const std::size_t flat = std::min(flat_before, dropped);
+    if (shape.mesh.triangles.empty()) {
+        where.fail(flat < dropped ? fmt::format("expected a larger shape: {}", too_small)
+                                  : "expected a triangle with an area, found none");
     }
+    warn_of_triangles(where, shape.name, flat, "without area");
+    warn_of_triangles(where, shape.name, dropped - flat, too_small);
     scene.shapes.push_back(std::move(shape));
     return static_cast<int>(scene.shapes.size()) - 1;
 }

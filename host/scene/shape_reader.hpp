@@ -12,9 +12,10 @@ namespace stokes {
 // Reads "shapes" into scene.shapes, in world space; scene.materials are read already. Throws InputError.
 void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene);
 
-// Appends a finished shape: drops triangles without area with a warning; throws InputError at where when none
-// is left, or when a coordinate is not finite or too large. Returns its index.
-int add_shape(const JsonCursor& where, Shape shape, Scene& scene);
+// Appends a shape moved to its place by transform: drops triangles without area, there or already before,
+// with a warning; throws InputError at where when none is left, or when a coordinate is not finite or too
+// large. Returns its index.
+int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform, Scene& scene);
 
 // The key "name" of a shape or light, or "KIND INDEX" without one; a name in taken is an error.
 std::string read_own_name(const JsonCursor& where, const std::string& fallback,

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "host/core/csv_table.hpp"
 #include "host/core/spectrum.hpp"
-#include "host/scene/csv_table.hpp"
 #include "host/scene/json_cursor.hpp"
 
 namespace stokes {

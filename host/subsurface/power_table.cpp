@@ -7,14 +7,11 @@
 #include <utility>
 
 #include "host/core/error.hpp"
+#include "host/core/media_limits.hpp"
 #include "host/subsurface/paper_transport.hpp"
 
 namespace stokes {
 namespace {
-
-// Mean free paths from 1e-9 mm to 1e9 mm: far beyond any medium, and safe in the kernels' single precision.
-constexpr double kSmallestSigmaT = 1e-9;
-constexpr double kLargestSigmaT = 1e9;
 
 void check_increasing(const std::string& name, const std::vector<double>& values, double low, double high) {
     if (values.empty()) throw InputError(fmt::format("table grid: axis {} is empty", name));
@@ -43,9 +40,9 @@ void check_coefficients(const std::string& medium, double lambda_nm, double sigm
     if (!std::isfinite(sigma_a) || sigma_a < 0.0)
         fail(fmt::format("sigma_a = {} 1/mm, expected a finite number of at least 0", sigma_a));
     const double sigma_t = sigma_s + sigma_a;
-    if (sigma_t < kSmallestSigmaT || sigma_t > kLargestSigmaT)
-        fail(fmt::format("sigma_t = sigma_s + sigma_a = {} 1/mm, expected {} to {}", sigma_t, kSmallestSigmaT,
-                         kLargestSigmaT));
+    if (sigma_t < smallest_sigma_t_per_mm || sigma_t > largest_sigma_t_per_mm)
+        fail(fmt::format("sigma_t = sigma_s + sigma_a = {} 1/mm, expected {} to {}", sigma_t, smallest_sigma_t_per_mm,
+                         largest_sigma_t_per_mm));
 }
 
 PowerTable empty_table(const std::string& component, const std::string& unit, const MediumSpectra& medium,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/core/atomic_file.hpp"
+#include "host/core/json_text.hpp"
 #include "host/subsurface/table_json.hpp"
 
 namespace stokes {
@@ -23,10 +24,6 @@ const std::vector<TableKind>& table_kinds() {
         {"paper", "multiple", "1/mm^2", {{"r", "mm"}, {"lambda", "nm"}}},
     };
     return kinds;
-}
-
-std::string quoted(const std::string& text) {
-    return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 const TableKind& known_kind(const JsonFields& fields) {
@@ -52,19 +49,19 @@ TableMedium read_medium(const Json& json, const std::string& path, std::size_t l
 void write_power_table(const PowerTable& table, const std::string& path) {
     std::string text =
         fmt::format("{{\"format\": \"{}\", \"version\": {},\n\"model\": {}, \"component\": {},\n",
-                    power_table_format, power_table_version, quoted(table.model), quoted(table.component));
+                    power_table_format, power_table_version, json_quoted(table.model), json_quoted(table.component));
     const TableMedium& medium = table.medium;
     text += fmt::format(
         "\"medium\": {{\"name\": {}, \"eta\": {}, \"dipole_eta\": {},\n  \"sigma_s\": {},\n  \"sigma_a\": "
         "{}}},\n",
-        quoted(medium.name), medium.eta, medium.dipole_eta, number_array(medium.sigma_s),
+        json_quoted(medium.name), medium.eta, medium.dipole_eta, number_array(medium.sigma_s),
         number_array(medium.sigma_a));
     text += "\"axes\": [";
     for (const TableAxis& axis : table.axes)
         text += fmt::format("{}{{\"name\": {}, \"unit\": {}, \"values\": {}}}",
-                            &axis == &table.axes[0] ? "" : ",\n  ", quoted(axis.name), quoted(axis.unit),
+                            &axis == &table.axes[0] ? "" : ",\n  ", json_quoted(axis.name), json_quoted(axis.unit),
                             number_array(axis.values));
-    text += fmt::format("],\n\"unit\": {},\n\"values\": [", quoted(table.unit));
+    text += fmt::format("],\n\"unit\": {},\n\"values\": [", json_quoted(table.unit));
 
     // One line for each run along the last axis.
     const std::size_t run = table.axes.back().values.size();

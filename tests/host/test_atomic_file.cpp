@@ -61,3 +61,14 @@ TEST_CASE("a symbolic link stays one and its target changes") {
     CHECK(file_content(folder.file("target")) == "after");
     CHECK(folder.names() == std::vector<std::string>{"link", "target"});
 }
+
+TEST_CASE("whether a file can be written is found without writing it") {
+    const TemporaryFolder folder;
+    put_file(folder.file("old"), "before");
+    CHECK_NOTHROW(check_can_be_written(folder.file("old")));
+    CHECK_NOTHROW(check_can_be_written(folder.file("new")));
+    CHECK_THROWS_AS(check_can_be_written(folder.file("missing/out.txt")), RunError);
+    CHECK_THROWS_WITH(check_can_be_written("/dev/null"), "/dev/null: cannot write: not a regular file");
+    CHECK(file_content(folder.file("old")) == "before");
+    CHECK(folder.names() == std::vector<std::string>{"old"});
+}

@@ -1,7 +1,7 @@
 #include <filesystem>
 
-#include "host/scene/csv_table.hpp"
-#include "host/scene/text_input.hpp"
+#include "host/core/csv_table.hpp"
+#include "host/core/text_input.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -106,6 +106,16 @@ TEST_CASE("colours outside the gamut keep hue and lightness and reach its edge")
     }
 }
 
+TEST_CASE("every exposure has a picture") {
+    const double infinity = std::numeric_limits<double>::infinity();
+    const FilmImage grey = uniform({0.5, 0.5, 0.5});
+    CHECK(byte_pixel(develop(grey, infinity), 0) == glm::ivec3(255));
+    CHECK(byte_pixel(develop(grey, 1e308), 0) == glm::ivec3(255));
+    CHECK(byte_pixel(develop(grey, -infinity), 0) == glm::ivec3(0));
+    CHECK(byte_pixel(develop(grey, -1e308), 0) == glm::ivec3(0));
+    CHECK(byte_pixel(develop(grey, std::numeric_limits<double>::quiet_NaN()), 0) == glm::ivec3(0));
+}
+
 TEST_CASE("automatic exposure follows the scale of the film") {
     const double ev = automatic_exposure_ev(ramp(1.0));
     CHECK(automatic_exposure_ev(ramp(2.0)) == Approx(ev - 1.0).margin(1e-9));

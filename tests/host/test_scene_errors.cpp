@@ -1,6 +1,8 @@
 #include <random>
 
+#include "host/core/media_limits.hpp"
 #include "host/scene/scene_reader.hpp"
+#include "host/subsurface/paper_transport.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -77,6 +79,8 @@ TEST_CASE("Bad scenes: render, film and camera") {
         {"\"passes\": 4", "\"passes\": 0", ":3: render.passes: expected an integer in [1, 100000000], got 0"},
         {"\"passes\": 4", "\"passes\": 1e30", ":3: render.passes: expected an integer in"},
         {"\"passes\": 4", "\"photons_per_pass\": -1", ":3: render.photons_per_pass: expected an integer in"},
+        {"\"passes\": 4", "\"photons_per_pass\": 268435457",
+         ":3: render.photons_per_pass: expected an integer in [1, 268435456], got"},
         {"\"passes\": 4", "\"alpha\": 0", ":3: render.alpha: expected a number in (0, 1], got 0"},
         {"\"passes\": 4", "\"radius_mm\": 0", ":3: render.radius_mm: expected a number in (0, 1e+07], got 0"},
         {"\"passes\": 4", "\"radius\": 1", ":3: render: unknown key \"radius\"; did you mean \"radius_mm\"?"},
@@ -153,7 +157,16 @@ TEST_CASE("Bad scenes: media, fluorophores and materials") {
         {"\"sigma_s_per_mm\": 2", "\"sigma_s\": 2",
          ":7: media.stone: unknown key \"sigma_s\"; did you mean \"sigma_s_per_mm\"?"},
         {"\"sigma_s_per_mm\": 2, \"sigma_a_per_mm\": 0.1", "\"sigma_s_per_mm\": 0, \"sigma_a_per_mm\": 0",
-         ":7: media.stone: expected sigma_s + sigma_a above zero from 300 to 830 nm, got 0 at 300 nm"},
+         ":7: media.stone: expected sigma_s + sigma_a in [1e-09, 1e+09] 1/mm from 300 to 830 nm, got 0 at "
+         "300"},
+        {"\"sigma_s_per_mm\": 2", "\"sigma_s_per_mm\": 2e9",
+         ":7: media.stone: expected sigma_s + sigma_a in [1e-09, 1e+09] 1/mm from 300"},
+        {"\"sigma_s_per_mm\": 2, \"sigma_a_per_mm\": 0.1", "\"sigma_s_per_mm\": 0, \"sigma_a_per_mm\": 9e-10",
+         ":7: media.stone: expected sigma_s + sigma_a in [1e-09, 1e+09] 1/mm from 300"},
+        {"\"eta\": 1.5", "\"dipole_eta\": 3.9",
+         ":7: media.stone.dipole_eta: expected a number in [1, 3.8], got 3.9"},
+        {"[[500, 1]]", "[[500, 0]]",
+         ":8: fluorophores.dye.emission: expected some emission from 300 to 830 nm, got none"},
         {"\"eta\": 1.5", "\"eta\": 0.5", ":7: media.stone.eta: expected a number in [1, 5], got 0.5"},
         {"[[300, 1]]", "[[300, 1.5]]",
          ":8: fluorophores.dye.excitation: expected values in [0, 1], got 1.5 at 300"},
@@ -211,6 +224,10 @@ TEST_CASE("Bad scenes: lights") {
         {"\"type\": \"disk\"", "\"type\": \"rectangle\"", ":15: lights[0]: unknown key \"radius_mm\""},
         {"[[300, 1], [400, 2]]", "[[200, 1], [250, 2]]",
          ":15: lights[0].spectrum: expected some light from 300 to 780 nm"},
+        {"[[300, 1], [400, 2]]", "[[404.4, 0], [404.6, 1], [404.8, 0]]",
+         ":15: lights[0].spectrum: expected some light from 300 to 780 nm, got none at any whole nanometre"},
+        {"[[300, 1], [400, 2]]", "[[404, 1e-320]]",
+         ":15: lights[0].spectrum: expected some light from 300 to 780 nm, got a sum of only"},
     });
     const std::size_t begin = base.find("\"lights\": [");
     const std::size_t end = base.find("  \"shapes\"");
@@ -276,6 +293,31 @@ TEST_CASE("Bad scenes: shapes and transforms") {
              ":17: shapes[1].body: expected one material in a body, got \"glow\" and \"floor\""},
         },
         folder.file("s.json"));
+}
+
+TEST_CASE("Shapes that single precision cannot hold where they are") {
+    check({{"{\"scale\": 2}", "{\"scale\": 0.01}, {\"translate_mm\": [9e6, 9e6, 0]}",
+            ":18: shapes[0]: expected a larger shape: too small for single precision at this distance"}});
+}
+
+TEST_CASE("The media that the reader lets through are those that tables can be made for") {
+    CHECK_NOTHROW(dipole_boundary(largest_dipole_eta));
+    CHECK_THROWS_AS(dipole_boundary(largest_dipole_eta + 0.1), InputError);
+}
+
+TEST_CASE("A file too large for the memory is an input error") {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("huge.json");
+    put_file(path, "");
+    std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
+    rlimit before{};
+    REQUIRE(::getrlimit(RLIMIT_AS, &before) == 0);
+    rlimit limit = before;
+    limit.rlim_cur = rlim_t{1} << 36;
+    REQUIRE(::setrlimit(RLIMIT_AS, &limit) == 0);
+    const std::string error = input_error([&] { read_scene(path); });
+    REQUIRE(::setrlimit(RLIMIT_AS, &before) == 0);
+    CHECK(error == path + ": cannot read: too large for the memory, 1048576 MiB");
 }
 
 TEST_CASE("A scene with nothing in it") {

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "host/core/media_limits.hpp"
+#include "host/scene/scene.hpp"
 #include "host/scene/scene_keys.hpp"
 #include "tests/support/catch.hpp"
 
@@ -71,4 +73,18 @@ TEST_CASE("Every key of the schema says what it is, or is one of a few words, or
                    value.contains("$ref")));
         }
     }
+}
+
+TEST_CASE("The schema has the reader's limits") {
+    const Json schema = read_schema();
+    const auto property = [&](const char* kind, const char* key) {
+        return schema.at("$defs").at(kind).at("properties").at(key);
+    };
+    CHECK(property("render", "photons_per_pass").at("maximum") == most_photons_per_pass);
+    CHECK(property("medium", "dipole_eta").at("maximum") == largest_dipole_eta);
+    for (const auto& [kind, key] :
+         {std::pair("material_diffuse", "reflectance"), std::pair("fluorophore", "excitation"),
+          std::pair("fluorophore", "emission")})
+        CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
+    CHECK(schema.at("$defs").at("spectrum_up_to_1").at("allOf").at(1).at("maximum") == 1);
 }

@@ -1,4 +1,4 @@
-#include "host/scene/csv_table.hpp"
+#include "host/core/csv_table.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "host/core/error.hpp"
-#include "host/scene/text_input.hpp"
+#include "host/core/text_input.hpp"
 
 namespace stokes {
 namespace {

@@ -1,4 +1,4 @@
-// Reading whole files and taking text apart: what the JSON, CSV, PLY and OBJ readers have in common.
+// Reading whole files and taking text apart: what the readers of JSON, CSV, PLY and OBJ have in common.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace stokes {
 
-// The bytes of a regular file. Throws InputError "PATH: cannot read: REASON".
+// The bytes of a regular file. Throws InputError "PATH: cannot read: REASON", also when they do not fit into
+// memory.
 std::string read_file(const std::string& path);
 
 // A whole token as a number, in the C locale whatever the environment says; "nan" and "inf" parse, so callers

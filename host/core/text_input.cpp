@@ -1,4 +1,4 @@
-#include "host/scene/text_input.hpp"
+#include "host/core/text_input.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <system_error>
 #include <vector>
 
@@ -35,6 +36,18 @@ std::optional<T> parse_whole(std::string_view token) {
     return value;
 }
 
+std::string room_for(std::uintmax_t size, const std::string& path) {
+    std::string text;
+    try {
+        if (size > text.max_size()) throw std::bad_alloc();
+        text.resize(static_cast<std::size_t>(size));
+    } catch (const std::bad_alloc&) {
+        throw InputError(path + ": cannot read: too large for the memory, " + std::to_string(size >> 20) +
+                         " MiB");
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string read_file(const std::string& path) {
@@ -45,7 +58,7 @@ std::string read_file(const std::string& path) {
     }
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) throw InputError(path + ": cannot read: " + std::strerror(errno));
-    std::string text(size, '\0');
+    std::string text = room_for(size, path);
     const std::size_t got = std::fread(text.data(), 1, text.size(), file.get());
     if (std::ferror(file.get())) throw InputError(path + ": cannot read: " + std::strerror(errno));
     text.resize(got);
