@@ -180,6 +180,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     stats.wall_s = wall_s;
     stats.set_up_s = set_up_s;
     if (!options.quiet) say_what_was_dropped(stats);
+    warn_about(stats.ledger);
     write_results(options, scene, film, stats);
 }
 

@@ -18,8 +18,9 @@ std::uint32_t first_capacity(std::uint32_t photons) { return photons + 1024; }
 
 std::uint32_t checked_photons(const Scene& scene) {
     const std::int64_t photons = scene.render.photons_per_pass;
-    if (photons < 1 || photons > 0x10000000)
-        throw InputError("photons per pass: expected 1 to 268435456, got " + std::to_string(photons));
+    if (photons < 1 || photons > most_photons_per_pass)
+        throw InputError("photons per pass: expected 1 to " + std::to_string(most_photons_per_pass) + ", got " +
+                         std::to_string(photons));
     return static_cast<std::uint32_t>(photons);
 }
 
