@@ -1,4 +1,5 @@
 // Stage 3 of a pass: what happens to each photon where it landed, and the lists that the next stages work through.
+#include "lib/inline.clh"
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
 #include "shared/material.h"
@@ -7,7 +8,7 @@
 #include "shared/ray.h"
 
 // What a path does next: PHYSICS STEP 1 for translucent materials, the paper's section 3.3.
-inline uint choose_event(__global const MaterialRecord* material, float u) {
+FORCE_INLINE uint choose_event(__global const MaterialRecord* material, float u) {
     if (material->kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
     if (material->kind != STOKES_TRANSLUCENT) return STOKES_EVENT_NONE;
     if (u < material->fluorescent_fraction)

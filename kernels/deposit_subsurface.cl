@@ -1,5 +1,6 @@
 // Stage 4 of a pass, below translucent surfaces: exits are sampled, put onto the real surface, stored in the maps
 // F, S and M, and the paths go on. Kugita et al., section 3.3 and PHYSICS section 3, model `paper`.
+#include "lib/inline.clh"
 #include "lib/normal.clh"
 #include "lib/power_table.clh"
 #include "lib/retrace.clh"
@@ -7,13 +8,13 @@
 #include "shared/photon.h"
 
 // Refraction angle [deg] of light that arrives at incidence cosine cos_in, by Snell's law.
-inline float refraction_angle_deg(float cos_in, float eta) {
+FORCE_INLINE float refraction_angle_deg(float cos_in, float eta) {
     const float sin_in = sqrt(max(0.0f, 1.0f - cos_in * cos_in));
     return asin(min(sin_in / eta, 1.0f)) * 57.2957795f;
 }
 
 // The power table of a component, at the pass's wavelengths; one where light leaves where it came in.
-inline float16 power_kept(__global const MaterialRecord* material, uint component,
+FORCE_INLINE float16 power_kept(__global const MaterialRecord* material, uint component,
                           __global const TableShape* table_shapes, __global const float16* table16, float r_mm,
                           float row) {
     if (material->medium == STOKES_NONE) return (float16)(1.0f);
@@ -22,7 +23,7 @@ inline float16 power_kept(__global const MaterialRecord* material, uint componen
 
 // Emitted flux of eq. 1-2: the re-radiation matrix times the flux. rows: one row an excitation wavelength; each
 // includes conversion, excitation, emission, the pair weight and the Stokes rule.
-inline float16 reradiate(__global const float16* rows, float16 f) {
+FORCE_INLINE float16 reradiate(__global const float16* rows, float16 f) {
     float16 out = rows[0] * f.s0 + rows[1] * f.s1 + rows[2] * f.s2 + rows[3] * f.s3;
     out += rows[4] * f.s4 + rows[5] * f.s5 + rows[6] * f.s6 + rows[7] * f.s7;
     out += rows[8] * f.s8 + rows[9] * f.s9 + rows[10] * f.sa + rows[11] * f.sb;
@@ -32,7 +33,7 @@ inline float16 reradiate(__global const float16* rows, float16 f) {
 // The pair weight in the re-radiation rows, (N-1)/(n-1), is that of light re-radiated once: given one wavelength in the
 // set, another is in it with probability (n-1)/(N-1). The k-th wavelength after it is there with probability
 // (n-k)/(N-k), given those before. Stokes' rule makes them all different.
-inline float chain_weight(float wavelengths, uint conversions) {
+FORCE_INLINE float chain_weight(float wavelengths, uint conversions) {
     const float k = (float)(conversions + 1u);
     const float n = (float)STOKES_WAVELENGTHS;
     return k < n ? (wavelengths - k) / (n - k) * (n - 1.0f) / (wavelengths - 1.0f) : 0.0f;
@@ -66,10 +67,8 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
                                           draw.a);
         float3 s, t;
         tangent_frame(normal, &s, &t);
-        float c;
-        const float sine = sincos(6.28318531f * draw.b, &c);
-        const float3 on_plane =
-            (float3)(point.x, point.y, point.z) + exit_point.r_mm * (c * s + sine * t);
+        const float2 at = exit_point.r_mm * unit_circle(draw.b);
+        const float3 on_plane = (float3)(point.x, point.y, point.z) + at.x * s + at.y * t;
         probe = (Probe){on_plane.x, on_plane.y, on_plane.z, exit_point.r_mm + 8.0f * pass->offset_mm,
                         normal.x,   normal.y,   normal.z,   point.body};
     }

@@ -1,4 +1,5 @@
 // Stage 1 of a pass: photons leave the lights.
+#include "lib/inline.clh"
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
 #include "shared/light.h"
@@ -7,7 +8,7 @@
 #include "shared/ray.h"
 
 // First index in [first, first + count) whose cumulative value exceeds u times the last one.
-inline uint pick_area(__global const float* cumulative, uint first, uint count, float u) {
+FORCE_INLINE uint pick_area(__global const float* cumulative, uint first, uint count, float u) {
     const float target = u * cumulative[first + count - 1u];
     uint low = 0u, high = count - 1u;
     while (low < high) {
@@ -52,9 +53,7 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
     } else {
         float2 uv;
         if (light->kind == STOKES_LIGHT_BEAM_DISK) {
-            float c;
-            const float s = sincos(6.28318531f * at.d, &c);
-            uv = sqrt(at.c) * (float2)(c, s);
+            uv = sqrt(at.c) * unit_circle(at.d);
         } else {
             uv = 2.0f * (float2)(at.c, at.d) - 1.0f;
         }

@@ -1,12 +1,13 @@
 // Once per pass and medium: the universal Green's function table onto the pass's sixteen wavelengths and onto axes in
 // millimetres, as power_table_at() and sample_distance() read them. Three kernels, in this order.
+#include "lib/inline.clh"
 #include "lib/power_table.clh"
 #include "lib/sampling.clh"
 #include "shared/green.h"
 
 // Positions on an axis of the universal table, node i >= 1 at first 2^((i - 1) step): the whole part is the node below,
 // the rest the fraction to the next, linear in the logarithm, and in the value below node 1. Held beyond the last node.
-inline float16 green_position(float16 value, float first, float step, uint count) {
+FORCE_INLINE float16 green_position(float16 value, float first, float step, uint count) {
     const float16 ratio = value / first;
     const float16 position = select(ratio, 1.0f + log2(ratio) / step, ratio > 1.0f);
     return clamp(position, 0.0f, (float)(count - 1u));
@@ -65,7 +66,7 @@ __kernel void resample_green(GreenShape shape, TableShape target, __global const
 }
 
 // The trapezoid weight of a node between two others.
-inline float half_span(float before, float after) { return 0.5f * (after - before); }
+FORCE_INLINE float half_span(float before, float after) { return 0.5f * (after - before); }
 
 // Work-items: one a row (depth) of the medium's table.
 // Reads:  table16 as above; u1 [first_row + row] float16: the probability of leaving scattered.

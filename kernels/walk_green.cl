@@ -13,6 +13,7 @@
 // A walk that gets deep would take long to return. Deep down diffusion is exact but for terms of order exp(-z): the
 // rest leaves at distance d from the walk's foot with density (h / 2 pi s^3) (1 + kappa s) exp(-kappa s) per area,
 // h the height above z of the surface that diffusion sees, s = sqrt(h^2 + d^2); d is drawn for kappa = 0.
+#include "lib/inline.clh"
 #include "lib/rng.clh"
 #include "shared/limits.h"
 #include "shared/green.h"
@@ -21,7 +22,7 @@
 #define FAINT_DEPTH 16.0f
 
 // Unpolarised Fresnel reflectance from within.
-inline float internal_reflectance(float mu, float eta) {
+FORCE_INLINE float internal_reflectance(float mu, float eta) {
     const float out2 = 1.0f - eta * eta * (1.0f - mu * mu);
     if (!(out2 > 0.0f)) return 1.0f;
     const float mu_out = sqrt(out2);
@@ -30,7 +31,7 @@ inline float internal_reflectance(float mu, float eta) {
     return 0.5f * (s * s + p * p);
 }
 
-inline void score(__global float16* histogram, __private const GreenWalk* walk, float2 at, float16 low, float16 high) {
+FORCE_INLINE void score(__global float16* histogram, __private const GreenWalk* walk, float2 at, float16 low, float16 high) {
     const float octaves = 0.5f * log2(dot(at, at) + FLT_MIN) - log2(walk->rho_first);
     const float bin = floor(octaves * walk->bins_per_octave + 1.5f);
     if (!(bin < (float)walk->bins)) return;
@@ -40,7 +41,7 @@ inline void score(__global float16* histogram, __private const GreenWalk* walk, 
 }
 
 // What a walk in the deep still has to give, and where.
-inline void score_deep(__global float16* histogram, __private const GreenWalk* walk, __constant float16* albedos,
+FORCE_INLINE void score_deep(__global float16* histogram, __private const GreenWalk* walk, __constant float16* albedos,
                        float2 at, float z, float16 low, float16 high, Random4 draw) {
     const float h = z + walk->deep_offset - walk->deep_spread * log(1.0f - draw.a);
     const float cosine = 1.0f - draw.b;

@@ -35,3 +35,8 @@ __kernel void sums(__global const float16* values, __global float* out, uint n) 
     const uint i = (uint)get_global_id(0);
     if (i < n) out[i] = sum16(values[i]);
 }
+
+__kernel void circle_points(__global const float* turns, __global float2* points, uint n) {
+    const uint i = (uint)get_global_id(0);
+    if (i < n) points[i] = unit_circle(turns[i]);
+}
