@@ -49,6 +49,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
     GatherPoint point;
     point.pixel = at.y * camera.width + at.x;
     point.maps = 0u;
+    point.weight = 1.0f;
     if (hit.triangle != STOKES_NONE) {
         const Triangle t = triangles[hit.triangle];
         const ShapeRecord shape = shapes[t.shape];
@@ -71,7 +72,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
 }
 
 // Work-items: one per point; launched once per map. L = 1/(pi r^2) * sum over the map's photons of flux / pi
-// (eq. 6 of Kugita et al.), for the surface map times the reflectance.
+// (eq. 6 of Kugita et al.), times the weight of measure_disks, for the surface map times the reflectance.
 // Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
 // material i), pass (to_x, to_y, to_z). Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
 __kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, HashGrid grid,
@@ -84,7 +85,7 @@ __kernel void gather_radiance(__global const GatherPoint* points, uint count, ui
     const GatherPoint point = points[i];
     const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux,
                                  (float3)(point.x, point.y, point.z), (float3)(point.nx, point.ny, point.nz));
-    float16 radiance = sum * (M_1_PI_F * M_1_PI_F / (grid.radius_mm * grid.radius_mm));
+    float16 radiance = sum * (point.weight * M_1_PI_F * M_1_PI_F / (grid.radius_mm * grid.radius_mm));
     if (map == STOKES_MAP_SURFACE) radiance *= spectra[point.material];
     film[map * count + point.pixel] += film_value(radiance, pass);
 }

@@ -7,6 +7,7 @@ Gather::Gather(const Device& device, const CameraRecord& camera)
       points_(device, "points seen by the camera", std::size_t{camera.width} * camera.height) {
     const Program program(device, "gather_radiance.cl");
     collect_points_ = program.kernel("collect_points");
+    measure_disks_ = Program(device, "measure_disks.cl").kernel("measure_disks");
     gather_radiance_ = program.kernel("gather_radiance");
 }
 
@@ -14,6 +15,11 @@ void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants
                             const Buffer<Ray>& rays, const Buffer<Hit>& hits, const Buffer<FilmValue>& film) {
     collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes,
                            scene.materials, scene.emitted, points_, film);
+}
+
+void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm) {
+    measure_disks_.launch(pixels(), pixels(), radius_mm, pass, scene.nodes, scene.blocks, scene.grid, scene.triangles,
+                          points_);
 }
 
 void Gather::add_map(std::uint32_t map, const SpatialHash& photons, const GatherScene& scene,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/device/device.hpp"
+#include "host/render/device_scene.hpp"
 #include "host/render/spatial_hash.hpp"
 #include "kernels/shared/camera.h"
 #include "kernels/shared/gather.h"
@@ -36,6 +37,10 @@ class Gather {
     void collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
                         const Buffer<Hit>& hits, const Buffer<FilmValue>& film);
 
+    // Weighs the points by how much of their disk of this radius lies on the surface. Without it each weighs one.
+    // Asynchronous.
+    void measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm);
+
     // Adds the light of one map (STOKES_MAP_*) at those points to the film's layer of the same number.
     // Asynchronous.
     void add_map(std::uint32_t map, const SpatialHash& photons, const GatherScene& scene,
@@ -47,7 +52,7 @@ class Gather {
   private:
     std::uint32_t pixels() const { return camera_.width * camera_.height; }
     CameraRecord camera_;
-    Kernel collect_points_, gather_radiance_;
+    Kernel collect_points_, measure_disks_, gather_radiance_;
     Buffer<GatherPoint> points_;
 };
 

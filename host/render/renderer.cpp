@@ -128,6 +128,7 @@ GatherScene Renderer::seen_scene() const {
 
 // Adds the photons to the film, map by map.
 void Renderer::see_maps(double radius_mm) {
+    gather_.measure_disks(on_device_, pass_.constants, static_cast<float>(radius_mm));
     for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
         const PhotonMap& map = maps_[m];
         if (map.used() == 0) continue;

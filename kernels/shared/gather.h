@@ -12,6 +12,9 @@
 #define STOKES_GATHER_MIN_COSINE 0.54f
 #define STOKES_GATHER_MAX_HEIGHT 0.25f
 
+// Random places of a disk that are tried at most.
+#define STOKES_GATHER_MOST_TRIALS 32u
+
 // The point that a camera ray sees. Written by collect_points, read by gather_radiance, one per camera ray.
 typedef struct GatherPoint {
     float x, y, z;          // [mm]
@@ -19,7 +22,8 @@ typedef struct GatherPoint {
     float nx, ny, nz;       // outward geometric normal, unit length
     unsigned int material;  // index into the MaterialRecord buffer
     unsigned int maps;      // bit STOKES_MAP_*: photons of this map count; 0: nothing to gather
-    unsigned int pad0, pad1, pad2;
+    float weight;           // 1 / the share of the disk on the surface, in the mean; written by measure_disks
+    unsigned int pad0, pad1;
 } GatherPoint;
 STOKES_ASSERT_SIZE(GatherPoint, 48);
 

@@ -37,7 +37,7 @@ using namespace stokes;
         F(CameraRecord, down_y) F(CameraRecord, down_z) F(CameraRecord, pad1) \
     S(GatherPoint) F(GatherPoint, x) F(GatherPoint, y) F(GatherPoint, z) F(GatherPoint, pixel) \
         F(GatherPoint, nx) F(GatherPoint, ny) F(GatherPoint, nz) F(GatherPoint, material) \
-        F(GatherPoint, maps) F(GatherPoint, pad0) F(GatherPoint, pad1) F(GatherPoint, pad2) \
+        F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, pad0) F(GatherPoint, pad1) \
     S(HashGrid) F(HashGrid, origin_x) F(HashGrid, origin_y) F(HashGrid, origin_z) \
         F(HashGrid, cells_per_mm) F(HashGrid, cells_x) F(HashGrid, cells_y) F(HashGrid, cells_z) \
         F(HashGrid, row_mask) F(HashGrid, keys) F(HashGrid, bucket_shift) F(HashGrid, radius_mm) \

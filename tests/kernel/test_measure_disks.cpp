@@ -1,0 +1,93 @@
+#include <cmath>
+
+#include "host/scene/bvh_builder.hpp"
+#include "host/scene/shapes.hpp"
+#include "kernels/shared/gather.h"
+#include "tests/support/catch.hpp"
+#include "tests/support/photon_fixture.hpp"
+#include "tests/support/statistics.hpp"
+
+using namespace stokes;
+
+namespace {
+
+std::vector<Triangle> triangles_of(const Mesh& mesh) {
+    std::vector<Triangle> triangles;
+    for (const glm::uvec3& t : mesh.triangles)
+        triangles.push_back(
+            make_triangle(mesh.positions_mm[t.x], mesh.positions_mm[t.y], mesh.positions_mm[t.z]));
+    return triangles;
+}
+
+GatherPoint point_at(double x, double y, double z) {
+    GatherPoint point{};
+    point.x = static_cast<float>(x);
+    point.y = static_cast<float>(y);
+    point.z = static_cast<float>(z);
+    point.ny = 1.0f;
+    point.maps = 1u << STOKES_MAP_SURFACE;
+    point.weight = 1.0f;
+    return point;
+}
+
+// Weights of count pixels that all see the same point of the mesh, its normal +y.
+Sample weights(const Mesh& mesh, GatherPoint point, std::uint32_t count, float radius_mm) {
+    const std::vector<Triangle> triangles = triangles_of(mesh);
+    const Bvh bvh = build_bvh(triangles);
+    std::vector<GatherPoint> given;
+    for (std::uint32_t pixel = 0; pixel < count; ++pixel) {
+        point.pixel = pixel;
+        given.push_back(point);
+    }
+    const Buffer<GatherPoint> points = on_device(given);
+    Program(test_device(), "measure_disks.cl")
+        .kernel("measure_disks")
+        .launch(count, count, radius_mm, pass_on_device(5), on_device(bvh.nodes), on_device(bvh.blocks), bvh.grid,
+                on_device(triangles), points);
+    Sample sample;
+    for (const GatherPoint& found : points.download()) sample.add(static_cast<double>(found.weight));
+    return sample;
+}
+
+// Share of a disk of radius 1 whose centre is d inside of a straight edge: one less the circular segment beyond it.
+double share_inside(double d) { return 1.0 - (std::acos(d) - d * std::sqrt(1.0 - d * d)) / M_PI; }
+
+}  // namespace
+
+TEST_CASE("the whole disk on the surface weighs one", "[measure_disks][tiny]") {
+    const Sample sample = weights(make_rectangle(20.0, 20.0), point_at(0.3, 0.0, -0.2), 50, 1.0f);
+    CHECK(sample.mean() == 1.0);
+    CHECK(sample.variance() == 0.0);
+}
+
+// The mean of the weight is the reciprocal of the share of the disk on the surface; seven comparisons at 4 standard errors.
+TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, in the mean", "[measure_disks]") {
+    const Mesh plate = make_rectangle(20.0, 20.0), post = make_prism(6, 10.0, 8.0);
+    const double apothem = 10.0 * std::sqrt(0.75);
+    struct Case {
+        const Mesh& mesh;
+        GatherPoint point;
+        double share;
+    };
+    for (const Case& c : {Case{plate, point_at(9.5, 0.0, 0.0), share_inside(0.5)},
+                          Case{plate, point_at(0.0, 0.0, -9.9), share_inside(0.1)},
+                          Case{plate, point_at(-9.2, 0.0, 3.0), share_inside(0.8)},
+                          Case{plate, point_at(9.9999, 0.0, 9.9999), 0.25},
+                          Case{post, point_at(0.0, 8.0, apothem - 0.3), share_inside(0.3)},
+                          Case{post, point_at(0.0, 8.0, -apothem + 0.6), share_inside(0.6)},
+                          Case{post, point_at(0.0, 8.0, 0.0), 1.0}}) {
+        const Sample sample = weights(c.mesh, c.point, 40000, 1.0f);
+        CAPTURE(c.point.x, c.point.y, c.point.z, sample.mean(), 1.0 / c.share);
+        CHECK(std::abs(sample.z(1.0 / c.share)) < 4.0);
+        if (c.share < 1.0) CHECK(sample.standard_error() < 0.03);
+    }
+}
+
+TEST_CASE("points without photons are left alone, and trials end where there is no surface", "[measure_disks][tiny]") {
+    GatherPoint nothing = point_at(0.0, 0.0, 0.0);
+    nothing.maps = 0;
+    nothing.weight = 7.0f;
+    CHECK(weights(make_rectangle(20.0, 20.0), nothing, 20, 1.0f).mean() == 7.0);
+    const double most = STOKES_GATHER_MOST_TRIALS;
+    CHECK(weights(make_rectangle(20.0, 20.0), point_at(0.0, 5.0, 0.0), 20, 1.0f).mean() == most);
+}
