@@ -1,4 +1,4 @@
-// trace_* against a plain double-precision search over all triangles.
+// trace_closest and trace_any against a plain double-precision search over all triangles.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -6,96 +6,13 @@
 #include <numeric>
 #include <random>
 
-#include "host/scene/bvh_builder.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
+#include "tests/support/traced_scene.hpp"
 #include "tests/support/triangle_meshes.hpp"
 
 using namespace stokes;
 
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-glm::dvec3 v0_of(const Triangle& t) {
-    return {t.v0x, t.v0y, t.v0z};
-}
-glm::dvec3 e1_of(const Triangle& t) {
-    return {t.e1x, t.e1y, t.e1z};
-}
-glm::dvec3 e2_of(const Triangle& t) {
-    return {t.e2x, t.e2y, t.e2z};
-}
-
-// The scene on the device, with its kernels.
-struct Traced {
-    explicit Traced(const std::vector<Triangle>& scene, const std::vector<std::string>& options = {})
-        : triangles(scene),
-          bvh(build_bvh(scene)),
-          program(test_device(), "trace_rays.cl", options),
-          nodes(test_device(), "nodes", bvh.nodes),
-          blocks(test_device(), "blocks", bvh.blocks),
-          triangle_buffer(test_device(), "triangles", scene) {}
-
-    std::vector<Hit> closest(const std::vector<Ray>& rays) {
-        const Buffer<Ray> in(test_device(), "rays", rays);
-        const Buffer<Hit> out(test_device(), "hits", rays.size());
-        const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_closest_all").launch(n, n, nodes, blocks, bvh.grid, in, out);
-        return out.download();
-    }
-    std::vector<cl_uint> any(const std::vector<Ray>& rays) {
-        const Buffer<Ray> in(test_device(), "rays", rays);
-        const Buffer<cl_uint> out(test_device(), "occluded", rays.size());
-        const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_any").launch(n, n, nodes, blocks, bvh.grid, in, out);
-        return out.download();
-    }
-    std::vector<Hit> probe(const std::vector<Probe>& probes) {
-        const Buffer<Probe> in(test_device(), "probes", probes);
-        const Buffer<Hit> out(test_device(), "hits", probes.size());
-        const auto n = static_cast<cl_uint>(probes.size());
-        program.kernel("trace_probe").launch(n, n, nodes, blocks, bvh.grid, triangle_buffer, in, out);
-        return out.download();
-    }
-
-    std::vector<Triangle> triangles;
-    Bvh bvh;
-    Program program;
-    Buffer<BvhNode> nodes;
-    Buffer<BvhBlock> blocks;
-    Buffer<Triangle> triangle_buffer;
-};
-
-Ray make_ray(const glm::vec3& o, const glm::vec3& d, float t_min = 0.0f, float t_max = infinity) {
-    return {o.x, o.y, o.z, t_min, d.x, d.y, d.z, t_max};
-}
-
-std::vector<Ray> random_rays(int count, float lo, float hi, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> where(lo, hi);
-    std::normal_distribution<float> normal;
-    std::vector<Ray> rays;
-    for (int i = 0; i < count; ++i) {
-        const float x = where(random), y = where(random), z = where(random);
-        const float dx = normal(random), dy = normal(random), dz = normal(random);
-        rays.push_back(make_ray({x, y, z}, glm::normalize(glm::vec3(dx, dy, dz))));
-    }
-    return rays;
-}
-
-// Moeller and Trumbore 1997 in double precision: t where the line meets the triangle, shrunk by margin in
-// each barycentric coordinate; NaN where it does not.
-double crossing(const Triangle& t, const glm::dvec3& o, const glm::dvec3& d, double margin) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const glm::dvec3 p = glm::cross(d, e2_of(t));
-    const double det = glm::dot(e1_of(t), p);
-    if (std::fabs(det) < 1e-4 * glm::length(e1_of(t)) * glm::length(e2_of(t)) || det == 0.0) return nan;
-    const glm::dvec3 s = (o - v0_of(t)) / det, q = glm::cross(s, e1_of(t));
-    const double u = glm::dot(s, p), v = glm::dot(d, q);
-    if (u < margin || v < margin || u + v > 1.0 - margin) return nan;
-    return glm::dot(e2_of(t), q);
-}
 
 // Nothing that lies clearly on the segment, and clearly within a triangle, is nearer than the hit; and the
 // hit is on the ray and on its triangle. tolerance_mm: rounding of coordinates.
@@ -367,61 +284,4 @@ TEST_CASE("the same bits for two work-group sizes, with and without the processo
     Traced portable(triangles, {"-DSTOKES_BVH_PORTABLE"});
     CHECK(same_bits(hits, portable.closest(rays)));
     CHECK(scene.any(rays) == portable.any(rays));
-}
-
-TEST_CASE("probes find the nearest surface of their body on their own side") {
-    std::vector<Triangle> triangles = sphere_mesh(30, 60, 10.0f, glm::vec3(0.0f), 0);
-    append(triangles, sphere_mesh(30, 60, 6.0f, glm::vec3(12.0f, 0.0f, 0.0f), 1));
-    append(triangles, box_mesh(glm::vec3(-30.0f, -20.0f, -30.0f), glm::vec3(30.0f, -10.0f, 30.0f), 1));
-    Traced scene(triangles);
-    std::mt19937 random(23);
-    std::vector<Probe> probes;
-    for (const Ray& r : random_rays(4000, -14.0f, 14.0f, 24)) {
-        const float reach = 0.5f + static_cast<float>(random() % 100) / 10.0f;
-        probes.push_back({r.ox, r.oy, r.oz, reach, r.dx, r.dy, r.dz, static_cast<unsigned>(random() % 2)});
-    }
-    const auto hits = scene.probe(probes);
-    int wrong = 0, found = 0, above = 0;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        const Probe& p = probes[i];
-        const glm::dvec3 o(p.x, p.y, p.z), n(p.nx, p.ny, p.nz);
-        double best = infinity;
-        bool too_close = false;  // to an edge or to the reach's end
-        for (const Triangle& t : triangles) {
-            if (t.body != p.body || glm::dot(glm::cross(e1_of(t), e2_of(t)), n) <= 0.0) continue;
-            const double inner = crossing(t, o, -n, 1e-4), outer = crossing(t, o, -n, -1e-4);
-            too_close = too_close || std::fabs(std::fabs(outer) - p.reach_mm) < 1e-3 ||
-                        (std::isnan(inner) && std::fabs(outer) < p.reach_mm);
-            if (std::fabs(inner) < p.reach_mm && std::fabs(inner) < std::fabs(best)) best = inner;
-        }
-        if (too_close) continue;
-        const bool hit = hits[i].triangle != STOKES_NONE;
-        found += hit, above += hit && hits[i].t < 0.0f;
-        wrong += hit != std::isfinite(best);
-        if (hit) wrong += std::fabs(hits[i].t - best) > 1e-3 || triangles.at(hits[i].triangle).body != p.body;
-    }
-    CHECK(wrong == 0);
-    CHECK(found > 500);
-    CHECK(above > 100);
-}
-
-TEST_CASE("probes on a flat surface, past its end, into its back, and not to be traced") {
-    Traced scene(box_mesh(glm::vec3(-10.0f), glm::vec3(10.0f), 3));
-    const auto probe = [](float x, float y, float reach, unsigned body) {
-        return Probe{x, y, 0.3f, reach, 0.0f, 1.0f, 0.0f, body};
-    };
-    const auto hits =
-        scene.probe({probe(1.0f, 10.0f, 0.5f, 3), probe(1.0f, 10.0f, 0.0f, 3), probe(10.5f, 10.0f, 5.0f, 3),
-                     probe(1.0f, 10.4f, 0.5f, 3), probe(1.0f, 9.6f, 0.5f, 3), probe(1.0f, -10.0f, 5.0f, 3),
-                     probe(1.0f, 10.0f, 0.5f, 2), probe(1.0f, 10.0f, -1.0f, 3)});
-    CHECK(hits[0].triangle != STOKES_NONE);
-    CHECK(hits[0].t == Approx(0.0).margin(1e-5));
-    CHECK(hits[1].triangle != STOKES_NONE);
-    CHECK(hits[2].triangle == STOKES_NONE);
-    CHECK(hits[3].t == Approx(0.4).margin(1e-5));   // the surface lies below
-    CHECK(hits[4].t == Approx(-0.4).margin(1e-5));  // above
-    CHECK(hits[4].triangle != STOKES_NONE);
-    CHECK(hits[5].triangle == STOKES_NONE);  // only the back of the bottom is there
-    CHECK(hits[6].triangle == STOKES_NONE);  // another body
-    CHECK(hits[7].triangle == STOKES_NONE);
 }
