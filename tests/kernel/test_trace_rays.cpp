@@ -254,7 +254,7 @@ TEST_CASE("empty scenes, single triangles, degenerate triangles and untraced ray
     CHECK(Traced(degenerate).closest({down})[0].triangle == 21);
 }
 
-TEST_CASE("a list traces its rays and leaves the others' hits alone") {
+TEST_CASE("a list traces its rays and leaves the others' hits alone", "[tiny]") {
     Traced scene(triangle_soup(500, 10.0f, glm::vec3(1.0f), 20));
     const auto rays = random_rays(300, 0.0f, 100.0f, 21);
     const std::vector<cl_uint> list{7, 299, 0, 41};
