@@ -1,61 +1,99 @@
 // Stage 3 of a pass: what happens to each photon where it landed, and the lists that the next stages work through.
+#include "lib/first_collision.clh"
+#include "lib/fresnel.clh"
 #include "lib/inline.clh"
+#include "lib/light_sum.clh"
+#include "lib/retrace.clh"
 #include "lib/rng.clh"
-#include "lib/sampling.clh"
 #include "shared/material.h"
 #include "shared/pass.h"
 #include "shared/path.h"
 #include "shared/ray.h"
 
-// What a path does next: PHYSICS STEP 1 for translucent materials, the paper's section 3.3.
-FORCE_INLINE uint choose_event(__global const MaterialRecord* material, float u) {
+// Where a ray meets a triangle: along the ray or from the corners, whichever has the smaller coordinates to round.
+FORCE_INLINE float3 hit_position(Ray ray, Hit hit, __global const Triangle* tri) {
+    const float3 origin = (float3)(ray.ox, ray.oy, ray.oz), direction = (float3)(ray.dx, ray.dy, ray.dz);
+    const float3 v0 = (float3)(tri->v0x, tri->v0y, tri->v0z);
+    const float3 e1 = (float3)(tri->e1x, tri->e1y, tri->e1z), e2 = (float3)(tri->e2x, tri->e2y, tri->e2z);
+    const float3 from_corner = max(max(fabs(v0), fabs(e1)), fabs(e2));
+    const float3 from_origin = max(fabs(origin), fabs(direction * hit.t));
+    const bool along = max(max(from_origin.x, from_origin.y), from_origin.z) <
+                       max(max(from_corner.x, from_corner.y), from_corner.z);
+    return along ? origin + direction * hit.t : v0 + e1 * hit.u + e2 * hit.v;
+}
+
+// True where light of this branch of a translucent material meets a fluorophore. Model `paper` and surface fluorescence:
+// with probability c, PHYSICS STEP 1, the paper's section 3.3. Model `conserving`: at the first collision, with the
+// probability of lib/first_collision.clh. Model `walk` decides at each collision below the surface.
+FORCE_INLINE bool meets_fluorophore(__global const MaterialRecord* material, __global const float16* spectra,
+                                    uint transport, Random4 draw) {
+    if (material->medium == STOKES_NONE || transport == STOKES_TRANSPORT_PAPER)
+        return draw.a < material->fluorescent_fraction;
+    if (transport == STOKES_TRANSPORT_WALK || material->reradiation_row == STOKES_NONE) return false;
+    __global const float16* sigma_t = &spectra[material->sigma_row];
+    const float16 weights = collision_weights(*sigma_t, collision_way(sigma_t, draw.c, draw.d));
+    return draw.a < uptake_probability(weights, uptake_of(material, spectra));
+}
+
+// What a path does next where it meets the front of a surface at incidence cosine cos_in.
+FORCE_INLINE uint choose_event(__global const MaterialRecord* material, __global const float16* spectra,
+                               uint transport, float cos_in, Random4 draw) {
     if (material->kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
     if (material->kind != STOKES_TRANSLUCENT) return STOKES_EVENT_NONE;
-    if (u < material->fluorescent_fraction)
+    if (material->exit_scale > 0.0f && draw.b < external_reflectance(cos_in, material->eta))
+        return STOKES_EVENT_SPECULAR;
+    if (meets_fluorophore(material, spectra, transport, draw))
         return material->reradiation_row == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_FLUORESCENCE;
     return material->medium == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_ELASTIC;
 }
 
 // Work-items: round.count, one an entry of list.
-// Reads: list [round.count], rays, hits, flux [W/nm, paths], triangles, shapes, materials.
-// Writes: points [paths], kinds [round.count]: STOKES_EVENT_*, ledgers (paths that end here).
+// Reads: list [round.count], hits, flux [W/nm, paths], triangles, shapes, materials, spectra (excitation, sigma_t).
+// Writes: points [paths], kinds [round.count]: STOKES_EVENT_*, ledgers (paths that end here), rays (specular
+//   reflection; a mirrored path goes on with the flux it has).
 // Light that meets the back of a surface is absorbed.
 __kernel void classify_photons(EventRound round, __global const PassConstants* pass, __global const uint* list,
-                               __global const Ray* rays, __global const Hit* hits, __global const float16* flux,
+                               __global Ray* rays, __global const Hit* hits, __global const float16* flux,
                                __global const Triangle* triangles, __global const MaterialRecord* materials,
-                               __global const ShapeRecord* shapes, __global SurfacePoint* points,
-                               __global PathLedger* ledgers, __global uchar* kinds) {
+                               __global const ShapeRecord* shapes, __global const float16* spectra,
+                               __global SurfacePoint* points, __global PathLedger* ledgers, __global uchar* kinds) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint path = list[i];
     kinds[i] = (uchar)STOKES_EVENT_NONE;
-    if (ledgers[path].fate != STOKES_FATE_ALIVE) return;
-    const float total = sum16(flux[path]);
-    if (!(total < INFINITY)) {
-        ledgers[path].fate = STOKES_FATE_OVERFLOW;
+    __global PathLedger* ledger = &ledgers[path];
+    if (ledger->fate != STOKES_FATE_ALIVE) return;
+    const float2 total = light_of(flux[path], pass);
+    if (!(total.x < INFINITY)) {
+        ledger->fate = STOKES_FATE_OVERFLOW;
         return;
     }
     const Hit hit = hits[path];
     if (hit.triangle == STOKES_NONE) {
-        ledgers[path].escaped += total;
-        ledgers[path].fate = STOKES_FATE_ESCAPED;
+        add_light(&ledger->escaped, total);
+        ledger->fate = STOKES_FATE_ESCAPED;
         return;
     }
     __global const Triangle* tri = &triangles[hit.triangle];
-    const float3 e1 = (float3)(tri->e1x, tri->e1y, tri->e1z);
-    const float3 e2 = (float3)(tri->e2x, tri->e2y, tri->e2z);
-    const float3 normal = normalize(cross(e1, e2));
-    const float3 position = (float3)(tri->v0x, tri->v0y, tri->v0z) + e1 * hit.u + e2 * hit.v;
+    const float3 normal = normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z),
+                                          (float3)(tri->e2x, tri->e2y, tri->e2z)));
+    const float3 position = hit_position(rays[path], hit, tri);
     const uint material = shapes[tri->shape].material;
     points[path] = (SurfacePoint){position.x, position.y, position.z, material,
                                   normal.x,   normal.y,   normal.z,   tri->body};
 
-    const bool front = rays[path].dx * normal.x + rays[path].dy * normal.y + rays[path].dz * normal.z < 0.0f;
+    const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
+    const float cos_in = min(-dot(direction, normal), 1.0f);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
-    const uint kind = front ? choose_event(&materials[material], draw.a) : STOKES_EVENT_NONE;
-    if (kind == STOKES_EVENT_NONE) {
-        ledgers[path].absorbed += total;
-        ledgers[path].fate = STOKES_FATE_ABSORBED;
+    const uint kind = cos_in > 0.0f ? choose_event(&materials[material], spectra, pass->transport, cos_in, draw)
+                                    : STOKES_EVENT_NONE;
+    if (kind == STOKES_EVENT_SPECULAR) {
+        ledger->reflections += 1u;
+        send_on(&rays[path], ledger, &round, pass->offset_mm, position, normal, reflect_at(direction, normal), total);
+        if (round.last != 0u) return;
+    } else if (kind == STOKES_EVENT_NONE) {
+        add_light(&ledger->absorbed, total);
+        ledger->fate = STOKES_FATE_ABSORBED;
     }
     kinds[i] = (uchar)kind;
 }
@@ -68,14 +106,15 @@ __kernel void count_lists(uint count, uint chunk_size, __global const uchar* kin
     const uint first = chunk * chunk_size;
     if (first >= count) return;
     const uint last = min(first + chunk_size, count);
-    uint diffuse = 0u, fluorescence = 0u, elastic = 0u;
+    uint alive = 0u, diffuse = 0u, fluorescence = 0u, elastic = 0u;
     for (uint i = first; i < last; ++i) {
         const uint kind = (uint)kinds[i];
+        alive += (uint)(kind != STOKES_EVENT_NONE);
         diffuse += (uint)(kind == STOKES_EVENT_DIFFUSE);
         fluorescence += (uint)(kind == STOKES_EVENT_FLUORESCENCE);
         elastic += (uint)(kind == STOKES_EVENT_ELASTIC);
     }
-    chunk_counts[chunk] = (ListCounts){diffuse + fluorescence + elastic, diffuse, fluorescence, elastic};
+    chunk_counts[chunk] = (ListCounts){alive, diffuse, fluorescence, elastic};
 }
 
 // Work-items: 1. Turns chunk_counts [chunks] into where each chunk's entries start; writes totals [1].
@@ -113,7 +152,7 @@ __kernel void write_lists(uint count, uint chunk_size, __global const uint* list
             diffuse[at.diffuse++] = path;
         else if (kind == STOKES_EVENT_FLUORESCENCE)
             fluorescence[at.fluorescence++] = path;
-        else
+        else if (kind == STOKES_EVENT_ELASTIC)
             elastic[at.elastic++] = path;
     }
 }

@@ -1,5 +1,6 @@
 // Stage 1 of a pass: photons leave the lights.
 #include "lib/inline.clh"
+#include "lib/light_sum.clh"
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
 #include "shared/light.h"
@@ -63,12 +64,14 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
     }
 
     const float16 start = photon_flux[light_index];
-    const float total = sum16(start);
-    const bool dark = !(total > 0.0f);
+    const float2 total = light_of(start, pass);
+    const bool dark = !(total.x > 0.0f);
     rays[path] = (Ray){origin.x,    origin.y,    origin.z,    0.0f,
                        direction.x, direction.y, direction.z, dark ? -1.0f : INFINITY};
     flux[path] = start;
-    ledgers[path] = (PathLedger){total, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f,
-                                 0.0f,  dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total / 16.0f, 0u, {0u, 0u, 0u}};
+    const LightSum none = {0.0f, 0.0f};
+    ledgers[path] = (PathLedger){{total.x, total.y}, none, none, none, none, none, none, none,
+                                 dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total.x / 16.0f,
+                                 0u, 0u, {0u, 0u}};
     list[path] = path;
 }

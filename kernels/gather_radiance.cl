@@ -1,7 +1,8 @@
 // What the camera rays see: light that surfaces emit, and the density estimate over the photon maps.
 // Surfaces have a front only, the side of their outward normal; their back is black.
-#include "lib/inline.clh"
+#include "lib/fresnel.clh"
 #include "lib/gather.clh"
+#include "lib/inline.clh"
 #include "lib/tiles.clh"
 #include "shared/camera.h"
 #include "shared/material.h"
@@ -33,6 +34,9 @@ FORCE_INLINE uint maps_of(MaterialRecord material) {
 
 // Work-items: one per camera ray, in the order of lib/tiles.clh. Finds the point each ray sees, and adds the
 // light it emits to the film's surface layer.
+// A material with Fresnel reflection is seen with the probability 1 - R of trace_seen: the light from below it leaves as
+// (1 - R) exit_scale, PHYSICS section 4, so that its weight is exit_scale; light that the surface itself emits is the same
+// in all directions, and is divided by 1 - R.
 // Reads rays, hits [width * height], triangles, shapes, materials of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
 // Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
@@ -50,6 +54,8 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
     point.pixel = at.y * camera.width + at.x;
     point.maps = 0u;
     point.weight = 1.0f;
+    point.reflected = (uint)(rays[i].ox != camera.position_x || rays[i].oy != camera.position_y ||
+                             rays[i].oz != camera.position_z);
     if (hit.triangle != STOKES_NONE) {
         const Triangle t = triangles[hit.triangle];
         const ShapeRecord shape = shapes[t.shape];
@@ -62,17 +68,25 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
         point.ny = normal.y;
         point.nz = normal.z;
         point.material = shape.material;
-        if (normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz < 0.0f) {
-            point.maps = maps_of(materials[shape.material]);
+        const float cos_in = -(normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz);
+        if (cos_in > 0.0f) {
+            const MaterialRecord material = materials[shape.material];
+            float16 emission = shape.light == STOKES_NONE ? (float16)(0.0f) : emitted[shape.light];
+            point.maps = maps_of(material);
+            if (material.exit_scale > 0.0f) {
+                point.weight = material.exit_scale;
+                // 2^-24: the steps of the draw.
+                emission /= max(1.0f - external_reflectance(min(cos_in, 1.0f), material.eta), 0x1p-24f);
+            }
             if (shape.light != STOKES_NONE)
-                film[STOKES_MAP_SURFACE * pixels + point.pixel] += film_value(emitted[shape.light], pass);
+                film[STOKES_MAP_SURFACE * pixels + point.pixel] += film_value(emission, pass);
         }
     }
     points[i] = point;
 }
 
 // Work-items: one per point; launched once per map. L = 1/(pi r^2) * sum over the map's photons of flux / pi
-// (eq. 6 of Kugita et al.), times the weight of measure_disks, for the surface map times the reflectance.
+// (eq. 6 of Kugita et al.), times the point's weight, for the surface map times the reflectance.
 // Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
 // material i), pass (to_x, to_y, to_z). Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
 __kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, HashGrid grid,

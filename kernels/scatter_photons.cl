@@ -20,28 +20,28 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
     const float16 incident = flux[path];
     __global PathLedger* ledger = &ledgers[path];
 
-    const float incident_sum = sum16(incident);
+    const float2 arriving = light_of(incident, pass);
     const uint slot = round.first_slot + i;
     if (slot < round.slot_limit) {
         heads[slot] = (PhotonHead){point.x, point.y, point.z, pack_normal(normal)};
         map_flux[slot] = incident;
-        ledger->stored += incident_sum;
+        add_light(&ledger->stored, arriving);
     }
 
     const float16 reflected = incident * spectra[point.material];
-    const float reflected_sum = sum16(reflected);
+    const float2 leaving = light_of(reflected, pass);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_SCATTER);
-    const float survival = incident_sum > 0.0f ? min(reflected_sum / incident_sum, 1.0f) : 0.0f;
-    ledger->absorbed += incident_sum - reflected_sum;
+    const float survival = arriving.x > 0.0f ? min(leaving.x / arriving.x, 1.0f) : 0.0f;
+    add_light(&ledger->absorbed, arriving - leaving);
     if (!(draw.a < survival)) {
-        ledger->roulette += reflected_sum;
+        add_light(&ledger->roulette, leaving);
         end_path(&rays[path], ledger, STOKES_FATE_ABSORBED);
         return;
     }
     const float16 carried = reflected / survival;
-    const float carried_sum = sum16(carried);
-    ledger->roulette += reflected_sum - carried_sum;
+    const float2 going_on = light_of(carried, pass);
+    add_light(&ledger->roulette, leaving - going_on);
     flux[path] = carried;
-    go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(point.x, point.y, point.z), normal, carried_sum,
+    go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(point.x, point.y, point.z), normal, going_on,
           draw.b, draw.c);
 }

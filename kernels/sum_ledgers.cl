@@ -1,4 +1,5 @@
 // Last stage of a pass: the paths' accounts, added up.
+#include "lib/light_sum.clh"
 #include "shared/limits.h"
 #include "shared/path.h"
 
@@ -10,24 +11,28 @@ __kernel void sum_ledgers(uint count, uint chunk_size, __global const PathLedger
     if (first >= count) return;
     const uint last = min(first + chunk_size, count);
     LedgerSums total;
-    for (uint k = 0u; k < 8u; ++k) total.flux[k] = 0.0f;
+    float2 light[8];
+    for (uint k = 0u; k < 8u; ++k) light[k] = (float2)(0.0f);
     for (uint k = 0u; k < STOKES_FATE_COUNT; ++k) total.fates[k] = 0u;
     total.missed_exits = 0u;
     total.rays = 0u;
-    total.pad[0] = total.pad[1] = total.pad[2] = 0u;
+    total.reflections = 0u;
+    total.pad[0] = total.pad[1] = 0u;
     for (uint i = first; i < last; ++i) {
         const PathLedger ledger = ledgers[i];
-        total.flux[0] += ledger.emitted;
-        total.flux[1] += ledger.absorbed;
-        total.flux[2] += ledger.stokes_loss;
-        total.flux[3] += ledger.escaped;
-        total.flux[4] += ledger.dropped;
-        total.flux[5] += ledger.roulette;
-        total.flux[6] += ledger.created;
-        total.flux[7] += ledger.stored;
+        light[0] += light_in(ledger.emitted);
+        light[1] += light_in(ledger.absorbed);
+        light[2] += light_in(ledger.stokes_loss);
+        light[3] += light_in(ledger.escaped);
+        light[4] += light_in(ledger.dropped);
+        light[5] += light_in(ledger.roulette);
+        light[6] += light_in(ledger.created);
+        light[7] += light_in(ledger.stored);
         total.fates[min(ledger.fate, STOKES_FATE_COUNT - 1u)] += 1u;
         total.missed_exits += ledger.missed_exits;
         total.rays += ledger.rays;
+        total.reflections += ledger.reflections;
     }
+    for (uint k = 0u; k < 8u; ++k) total.light[k] = (LightSum){light[k].x, light[k].y};
     sums[chunk] = total;
 }

@@ -13,6 +13,7 @@
 // A walk that gets deep would take long to return. Deep down diffusion is exact but for terms of order exp(-z): the
 // rest leaves at distance d from the walk's foot with density (h / 2 pi s^3) (1 + kappa s) exp(-kappa s) per area,
 // h the height above z of the surface that diffusion sees, s = sqrt(h^2 + d^2); d is drawn for kappa = 0.
+#include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/rng.clh"
 #include "shared/limits.h"
@@ -20,16 +21,6 @@
 
 // Smaller escapes are not worth the score: exp(-16) = 1e-7.
 #define FAINT_DEPTH 16.0f
-
-// Unpolarised Fresnel reflectance from within.
-FORCE_INLINE float internal_reflectance(float mu, float eta) {
-    const float out2 = 1.0f - eta * eta * (1.0f - mu * mu);
-    if (!(out2 > 0.0f)) return 1.0f;
-    const float mu_out = sqrt(out2);
-    const float s = (eta * mu - mu_out) / (eta * mu + mu_out);
-    const float p = (mu - eta * mu_out) / (mu + eta * mu_out);
-    return 0.5f * (s * s + p * p);
-}
 
 FORCE_INLINE void score(__global float16* histogram, __private const GreenWalk* walk, float2 at, float16 low, float16 high) {
     const float octaves = 0.5f * log2(dot(at, at) + FLT_MIN) - log2(walk->rho_first);

@@ -13,8 +13,10 @@
 #include "host/image/develop.hpp"
 #include "host/image/exr.hpp"
 #include "host/image/png.hpp"
+#include "host/render/assumptions.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
+#include "host/scene/mesh_topology.hpp"
 #include "host/scene/scene_reader.hpp"
 
 namespace stokes {
@@ -29,7 +31,7 @@ extern "C" void catch_signal(int signal) {
 }
 
 struct RenderOptions {
-    std::string scene_file, exr_file, png_file, stats_file, device, kernel_directory, size;
+    std::string scene_file, exr_file, png_file, stats_file, device, kernel_directory, size, transport;
     int passes = 0, threads = 0;
     std::int64_t photons = 0;
     std::uint32_t seed = 0;
@@ -45,6 +47,8 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--seed")) render.seed = options.seed;
     if (command.count("--alpha")) render.alpha = options.alpha;
     if (command.count("--radius")) render.radius_mm = options.radius_mm;
+    if (command.count("--transport"))
+        render.transport = static_cast<Transport>(index_of_word(options.transport, transport_words));
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -62,6 +66,7 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
     return {{"stokes.version", std::string(STOKES_VERSION)},
             {"stokes.scene", stats.scene},
             {"stokes.device", stats.device},
+            {"stokes.transport", stats.transport},
             {"stokes.passes", static_cast<int>(stats.passes)},
             {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
             {"stokes.seed", static_cast<double>(stats.seed)},
@@ -79,6 +84,7 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.scene = scene.file;
     stats.device = device.description().name;
     stats.driver = device.description().platform + " " + device.description().driver;
+    stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -160,6 +166,9 @@ void render(const CLI::App& command, const RenderOptions& options) {
     check_outputs({options.exr_file, options.png_file, options.stats_file}, options.scene_file);
     Scene scene = read_scene(options.scene_file);
     apply(command, options, scene);
+    if (scene.render.transport == Transport::walk) check_walkable(scene);
+    warn_about_models(scene);
+    warn_about_assumptions(scene);
     std::signal(SIGINT, catch_signal);
     std::signal(SIGTERM, catch_signal);
     Device device = open_device(options);
@@ -202,6 +211,9 @@ void add_render_command(CLI::App& app) {
     command->add_option("--photons", options->photons, "Photons per pass")
         ->check(number_in(1, static_cast<double>(most_photons_per_pass)));
     command->add_option("--size", options->size, "Picture size in pixels")->type_name("WxH");
+    command->add_option("--transport", options->transport, "How light travels below translucent surfaces")
+        ->type_name("MODEL")
+        ->check(word_of(transport_words));
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

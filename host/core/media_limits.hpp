@@ -11,4 +11,7 @@ inline constexpr double largest_sigma_t_per_mm = 1e9;
 // The dipole's fit of the internal diffuse reflectance reaches 1, which no boundary can have, at 3.85.
 inline constexpr double largest_dipole_eta = 3.8;
 
+// Green's function tables, which surfaces with Fresnel reflection need, end at this refractive index.
+inline constexpr double largest_green_eta = 4.0;
+
 }  // namespace stokes

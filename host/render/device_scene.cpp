@@ -1,12 +1,16 @@
 #include "host/render/device_scene.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
+#include "host/render/green_resampler.hpp"
+#include "host/render/green_walk.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
 #include "host/scene/bvh_builder.hpp"
 #include "host/subsurface/distance_sampler.hpp"
+#include "host/subsurface/fresnel.hpp"
 
 namespace stokes {
 
@@ -20,6 +24,21 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
     to.insert(to.end(), more.begin(), more.end());
 }
 
+bool has_subsurface(const Material& material) {
+    return material.kind == MaterialKind::translucent && material.subsurface;
+}
+
+bool reflects(const Scene& scene, const Material& material) {
+    return has_subsurface(material) && material.fresnel && scene.render.transport != Transport::paper;
+}
+
+// Index of the owner of a material's tables.
+std::uint32_t table_owner(const Scene& scene, const Material& material) {
+    const auto medium = static_cast<std::uint32_t>(material.medium);
+    if (scene.render.transport == Transport::paper) return medium;
+    return 2 * medium + (reflects(scene, material) ? 1 : 0);
+}
+
 std::vector<MaterialRecord> material_records(const Scene& scene) {
     const SpectraLayout layout(scene);
     std::vector<MaterialRecord> records;
@@ -28,22 +47,26 @@ std::vector<MaterialRecord> material_records(const Scene& scene) {
         record.kind = material.kind == MaterialKind::diffuse       ? STOKES_DIFFUSE
                       : material.kind == MaterialKind::translucent ? STOKES_TRANSLUCENT
                                                                    : STOKES_BLACK;
-        const bool subsurface = material.kind == MaterialKind::translucent && material.subsurface;
-        record.medium = subsurface ? static_cast<std::uint32_t>(material.medium) : STOKES_NONE;
+        const bool subsurface = has_subsurface(material);
+        record.medium = subsurface ? table_owner(scene, material) : STOKES_NONE;
         record.fluorescent_fraction = static_cast<float>(material.fluorescent_fraction);
-        record.eta = subsurface ? static_cast<float>(scene.media[static_cast<std::size_t>(material.medium)].eta) : 1.0f;
+        const double eta = subsurface ? scene.media[static_cast<std::size_t>(material.medium)].eta : 1.0;
+        record.eta = static_cast<float>(eta);
         const bool fluorescent = material.fluorophore >= 0;
         record.excitation_row = fluorescent ? layout.excitation_row(material.fluorophore) : STOKES_NONE;
         record.reradiation_row = fluorescent ? layout.reradiation_row(material.fluorophore) : STOKES_NONE;
+        record.sigma_row = subsurface ? layout.sigma_row(material.medium) : STOKES_NONE;
+        record.exit_scale =
+            reflects(scene, material) ? static_cast<float>(1.0 / (1.0 - diffuse_reflectance(eta))) : 0.0f;
         records.push_back(record);
     }
     return records;
 }
 
-DeviceTables upload_tables(const Device& device, const Scene& scene) {
+DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
     std::vector<bool> needed(scene.media.size(), false);
     for (const Material& material : scene.materials)
-        if (material.kind == MaterialKind::translucent && material.subsurface)
+        if (has_subsurface(material))
             needed[static_cast<std::size_t>(material.medium)] = true;
     std::vector<TableShape> shapes;
     std::vector<float> values, mean_rows, cumulative_rows;
@@ -72,6 +95,57 @@ DeviceTables upload_tables(const Device& device, const Scene& scene) {
     result.cumulative_rows = Buffer<float>(device, "distance distributions", cumulative_rows);
     result.at_wavelengths = Buffer<Flux16>(device, "power tables of the pass", result.entries);
     return result;
+}
+
+// Room for the Green's function tables, which every pass makes anew.
+DeviceTables reserve_green_tables(const Device& device, const Scene& scene) {
+    std::vector<TableShape> shapes(std::max<std::size_t>(6 * scene.media.size(), 1), TableShape{});
+    DeviceTables result;
+    for (std::size_t m = 0; m < scene.media.size(); ++m) {
+        const Medium& medium = scene.media[m];
+        double least = std::numeric_limits<double>::infinity(), most = 0.0;
+        for (int lambda = scene.render.lambda_min_nm; lambda <= scene.render.lambda_max_nm; ++lambda) {
+            const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
+            least = std::min(least, sigma_t);
+            most = std::max(most, sigma_t);
+        }
+        for (const bool fresnel : {false, true}) {
+            const auto owned = [&](const Material& material) {
+                return has_subsurface(material) && material.medium == static_cast<int>(m) && material.fresnel == fresnel;
+            };
+            if (std::none_of(scene.materials.begin(), scene.materials.end(), owned)) continue;
+            GreenOwner owner;
+            owner.medium = static_cast<int>(m);
+            owner.eta = fresnel ? medium.eta : 1.0;
+            if (result.green_tables.count(owner.eta) == 0)
+                result.green_tables[owner.eta] = green_table_for(device, owner.eta);
+            owner.shape = green_medium_shape(result.green_tables[owner.eta], least, most, result.entries);
+            owner.first_row = result.green_rows;
+            result.entries += owner.shape.row_count * owner.shape.r_count;
+            result.green_rows += owner.shape.row_count;
+            for (std::size_t component = 0; component < 3; ++component)
+                shapes[3 * (2 * m + (fresnel ? 1 : 0)) + component] = owner.shape;
+            result.green.push_back(owner);
+        }
+    }
+    const std::size_t entries = std::max<std::size_t>(result.entries, 1);
+    result.shapes = Buffer<TableShape>(device, "power table shapes", shapes);
+    result.mean_rows = Buffer<float>(device, "distance densities", entries);
+    result.cumulative_rows = Buffer<float>(device, "distance distributions", entries);
+    result.at_wavelengths = Buffer<Flux16>(device, "power tables of the pass", entries);
+    return result;
+}
+
+// `walk` needs none; the kernels' arguments are there.
+DeviceTables make_tables(const Device& device, const Scene& scene) {
+    if (scene.render.transport == Transport::paper) return upload_power_tables(device, scene);
+    if (scene.render.transport == Transport::conserving) return reserve_green_tables(device, scene);
+    return reserve_green_tables(device, Scene{});
+}
+
+std::vector<std::uint32_t> body_kinds(const Scene& scene) {
+    std::vector<std::uint32_t> kinds(static_cast<std::size_t>(std::max(scene.body_count, 1)), STOKES_BODY_CLOSED);
+    return kinds;
 }
 
 struct LightTables {
@@ -156,7 +230,11 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     light_areas = Buffer<float>(device, "light areas", tables_of_lights.areas);
     light_surface_area_mm2 = tables_of_lights.surface_area_mm2;
     light_count = static_cast<std::uint32_t>(scene.lights.size());
-    tables = upload_tables(device, scene);
+    transport = scene.render.transport;
+    tables = make_tables(device, scene);
+    has_fresnel = std::any_of(scene.materials.begin(), scene.materials.end(),
+                              [&](const Material& material) { return reflects(scene, material); });
+    bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));
 
     const SceneExtent extent = scene_extent(scene);
     minimum_mm = glm::vec3(extent.minimum);

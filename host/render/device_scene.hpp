@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "host/device/device.hpp"
 #include "host/scene/scene.hpp"
 #include "host/subsurface/device_table.hpp"
+#include "host/subsurface/green_table.hpp"
 #include "kernels/shared/bvh.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/material.h"
@@ -15,15 +17,28 @@
 
 namespace stokes {
 
-// The power tables of all media of a scene, for each medium fluorescence, single, multiple.
+// A medium's Green's function tables, model `conserving`. They are made anew for every pass (SubsurfaceTables).
+struct GreenOwner {
+    int medium;              // index into Scene::media
+    double eta;              // of the tables: 1 where the surface does not reflect
+    std::size_t first_row;   // in the probabilities of escape
+    TableShape shape;
+};
+
+// What subsurface light is looked up in. An owner has three shapes, for fluorescence, single and multiple scattering.
+// Model `paper`: an owner is a medium, with three power tables. `conserving`: an owner is a medium with or without a
+// reflecting surface, with one table. `walk`: there are none.
 struct DeviceTables {
-    Buffer<TableShape> shapes;             // [3 media]
-    Buffer<float> values;                  // [entry][lambda]
+    Buffer<TableShape> shapes;             // [3 owners]
+    Buffer<float> values;                  // paper: [entry][lambda]
     Buffer<float> mean_rows;               // [entry] distance densities
     Buffer<float> cumulative_rows;         // [entry]
     Buffer<Flux16> at_wavelengths;         // [entry] at the pass's wavelengths
     EvenAxis wavelengths;                  // of values [nm]
     std::uint32_t entries = 0;
+    std::vector<GreenOwner> green;         // conserving
+    std::map<double, GreenTable> green_tables;  // by refractive index
+    std::size_t green_rows = 0;            // of all of them together
 };
 
 struct DeviceScene {
@@ -32,11 +47,14 @@ struct DeviceScene {
     Buffer<Triangle> triangles;
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
+    Buffer<std::uint32_t> bodies;  // STOKES_BODY_*, by body; one entry where the transport does not ask
     Buffer<BvhNode> nodes;
     Buffer<BvhBlock> blocks;
     BvhGrid grid{};
     Buffer<LightRecord> lights;
     Buffer<float> light_areas;  // cumulative area of the triangles of each surface light [mm^2]
+    Transport transport = Transport::paper;
+    bool has_fresnel = false;  // some material reflects specularly
     DeviceTables tables;
     std::vector<double> light_probability;      // per light
     std::vector<double> light_surface_area_mm2;  // per light, 0 for beams

@@ -32,13 +32,13 @@ class Gather {
   public:
     Gather(const Device& device, const CameraRecord& camera);
 
-    // Finds the points that the camera rays see, and adds emitters seen directly to the surface layer.
-    // rays, hits: one per pixel, as CameraView makes and trace_closest finds them. Asynchronous.
+    // Finds the points that the camera rays see, and adds the light of emitters among them to the surface layer.
+    // rays, hits: one per pixel, as CameraView makes and trace_closest_all or trace_seen find them. Asynchronous.
     void collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
                         const Buffer<Hit>& hits, const Buffer<FilmValue>& film);
 
-    // Weighs the points by how much of their disk of this radius lies on the surface. Without it each weighs one.
-    // Asynchronous.
+    // Weighs the points by how much of their disk of this radius lies on the surface, once a pass. Without it each
+    // weighs one, or the exit_scale of its material. Asynchronous.
     void measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm);
 
     // Adds the light of one map (STOKES_MAP_*) at those points to the film's layer of the same number.

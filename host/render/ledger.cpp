@@ -9,22 +9,31 @@
 
 namespace stokes {
 
-double Ledger::imbalance() const {
+double Balance::imbalance() const {
     const double came = emitted + created;
     return came > 0.0 ? (came - absorbed - stokes_loss - escaped - dropped - roulette) / came : 0.0;
 }
 
 void warn_about(const Ledger& ledger) {
-    if (ledger.created > 0.01 * ledger.emitted)
+    const Balance& power = ledger.power;
+    if (power.created > 0.01 * power.emitted)
         warn(fmt::format("{:.3g} times the emitted light was created, by power tables above one or by fluorophores that emit "
                          "more than they take up",
-                         ledger.created / ledger.emitted));
-    if (!(std::abs(ledger.imbalance()) < 1e-4))
-        warn(fmt::format("the account of the light does not close: imbalance {:.2g}", ledger.imbalance()));
+                         power.created / power.emitted));
+    for (const double imbalance : {power.imbalance(), ledger.photons.imbalance()})
+        if (!(std::abs(imbalance) < 1e-4)) {
+            warn(fmt::format("the account of the light does not close: imbalance {:.2g}", imbalance));
+            return;
+        }
 }
 
 void LedgerBook::add(const PhotonAccount& account, double spectral_weight_nm) {
-    for (std::size_t k = 0; k < energy_.size(); ++k) energy_[k] += account.flux[k] * spectral_weight_nm;
+    // lambda/(h c) turns power into photons; wavelengths are nanometres.
+    constexpr double planck_times_light = 6.62607015e-34 * 299792458.0;
+    for (std::size_t k = 0; k < power_.size(); ++k) {
+        power_[k] += account.energy[k] * spectral_weight_nm;
+        photons_[k] += account.photons[k] * spectral_weight_nm * 1e-9 / planck_times_light;
+    }
     for (std::size_t k = 0; k < fates_.size(); ++k) fates_[k] += account.fates[k];
     rays_ += account.rays;
     missed_exits_ += account.missed_exits;
@@ -35,20 +44,31 @@ void LedgerBook::add(const PhotonAccount& account, double spectral_weight_nm) {
 
 std::uint64_t LedgerBook::photons() const { return std::accumulate(fates_.begin(), fates_.end(), std::uint64_t{0}); }
 
+namespace {
+
+Balance mean_balance(const std::array<double, 8>& sums, double share) {
+    Balance balance;
+    double* const fields[] = {&balance.emitted, &balance.absorbed, &balance.stokes_loss, &balance.escaped,
+                              &balance.dropped, &balance.roulette, &balance.created,     &balance.stored};
+    for (std::size_t k = 0; k < sums.size(); ++k) *fields[k] = sums[k] * share;
+    if (balance.stokes_loss < 0.0) {  // a fluorophore that emits more than it takes up
+        balance.created -= balance.stokes_loss;
+        balance.stokes_loss = 0.0;
+    }
+    return balance;
+}
+
+}  // namespace
+
 Ledger LedgerBook::ledger() const {
     const double share = passes_ > 0 ? 1.0 / static_cast<double>(passes_) : 0.0;
     Ledger ledger;
-    double* const fields[] = {&ledger.emitted, &ledger.absorbed, &ledger.stokes_loss, &ledger.escaped,
-                              &ledger.dropped, &ledger.roulette, &ledger.created,     &ledger.stored};
-    for (std::size_t k = 0; k < energy_.size(); ++k) *fields[k] = energy_[k] * share;
-    if (ledger.stokes_loss < 0.0) {  // a fluorophore that emits more than it takes up
-        ledger.created -= ledger.stokes_loss;
-        ledger.stokes_loss = 0.0;
-    }
-    ledger.photons = photons();
-    ledger.absorbed_photons = fates_[STOKES_FATE_ABSORBED];
-    ledger.escaped_photons = fates_[STOKES_FATE_ESCAPED];
-    ledger.dropped_photons = ledger.photons - ledger.absorbed_photons - ledger.escaped_photons;
+    ledger.power = mean_balance(power_, share);
+    ledger.photons = mean_balance(photons_, share);
+    ledger.paths = photons();
+    ledger.absorbed_paths = fates_[STOKES_FATE_ABSORBED];
+    ledger.escaped_paths = fates_[STOKES_FATE_ESCAPED];
+    ledger.dropped_paths = ledger.paths - ledger.absorbed_paths - ledger.escaped_paths;
     return ledger;
 }
 

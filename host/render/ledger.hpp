@@ -9,21 +9,28 @@
 
 namespace stokes {
 
-// Means over the passes; powers [W], integrated over the render's wavelengths. Along the photons' paths
+// Sums along the photons' paths, in energy or in photons:
 // emitted + created = absorbed + stokes_loss + escaped + dropped + roulette.
-struct Ledger {
+struct Balance {
     double emitted = 0.0;
-    double absorbed = 0.0;     // by surfaces, media and black
+    double absorbed = 0.0;     // by surfaces, media and black; an estimate, which can be below 0 where nothing absorbs
     double stokes_loss = 0.0;  // taken up by fluorophores and not re-emitted
     double escaped = 0.0;      // left the scene
     double dropped = 0.0;      // cut off: missed exits, full maps, the limit of events
-    double roulette = 0.0;     // statistical balance of Russian roulette, mean zero
+    double roulette = 0.0;     // statistical balance of Russian roulette and random weights, mean zero
     double created = 0.0;      // by power tables above one, and by fluorophores that emit more than they take up
     double stored = 0.0;       // put into the maps; not part of the sum, light is stored at every event
-    std::uint64_t photons = 0, absorbed_photons = 0, escaped_photons = 0, dropped_photons = 0;
 
     // (emitted + created - everything the light went to) / (emitted + created): 0 but for rounding.
     double imbalance() const;
+};
+
+// Means over the passes, integrated over the render's wavelengths.
+struct Ledger {
+    Balance power;    // [W]
+    Balance photons;  // [1/s]
+    // Simulated paths, of all passes, by how they ended.
+    std::uint64_t paths = 0, absorbed_paths = 0, escaped_paths = 0, dropped_paths = 0;
 };
 
 // Says, once, what a user should not overlook: light created beyond a hundredth of what was emitted, or an account that
@@ -44,7 +51,7 @@ class LedgerBook {
     std::uint64_t deposits() const { return deposits_; }
 
   private:
-    std::array<double, 8> energy_{};  // in the order of LedgerSums [W]
+    std::array<double, 8> power_{}, photons_{};  // in the order of LedgerSums [W], [1/s]
     std::array<std::uint64_t, STOKES_FATE_COUNT> fates_{};
     std::uint64_t passes_ = 0, rays_ = 0, missed_exits_ = 0, refused_slots_ = 0, deposits_ = 0;
 };

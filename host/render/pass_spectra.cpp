@@ -10,28 +10,40 @@ namespace stokes {
 
 namespace {
 
+// Over which the emission is normalised [nm].
+constexpr int first_emission_nm = 300, last_emission_nm = 830;
+
 Flux16 sampled(const Spectrum& spectrum, const WavelengthSet& set, double factor = 1.0) {
     Flux16 result;
     for (std::size_t i = 0; i < set.size(); ++i) result.v[i] = static_cast<float>(factor * spectrum.at(set[i]));
     return result;
 }
 
-PassConstants make_constants(const RenderSettings& render, const WavelengthSet& set, std::uint32_t pass,
+std::uint32_t transport_code(Transport transport) {
+    return transport == Transport::paper        ? STOKES_TRANSPORT_PAPER
+           : transport == Transport::conserving ? STOKES_TRANSPORT_CONSERVING
+                                                : STOKES_TRANSPORT_WALK;
+}
+
+PassConstants make_constants(const RenderSettings& render, const PassWavelengths& wavelengths, std::uint32_t pass,
                              std::uint32_t photons) {
     PassConstants constants{};
     const double weight = image_weight_nm(render.lambda_min_nm, render.lambda_max_nm);
     const double to_film = luminous_efficacy * 1e6 * weight;
     const ColourMatching& observer = cie1931();
+    const WavelengthSet& set = wavelengths.set;
     for (std::size_t i = 0; i < set.size(); ++i) {
         constants.lambda_nm[i] = static_cast<float>(set[i]);
         constants.to_x[i] = static_cast<float>(to_film * observer.x.at(set[i]));
         constants.to_y[i] = static_cast<float>(to_film * observer.y.at(set[i]));
         constants.to_z[i] = static_cast<float>(to_film * observer.z.at(set[i]));
+        constants.chain[i] = static_cast<float>(wavelengths.chain[i]);
     }
     constants.seed = render.seed;
     constants.pass = pass;
     constants.photons = photons;
-    constants.wavelengths = static_cast<float>(render.lambda_max_nm - render.lambda_min_nm + 1);
+    constants.transport = transport_code(render.transport);
+    constants.first_collision_only = render.first_collision_only ? 1 : 0;
     return constants;
 }
 
@@ -39,7 +51,21 @@ PassConstants make_constants(const RenderSettings& render, const WavelengthSet& 
 
 SpectraLayout::SpectraLayout(const Scene& scene)
     : materials(static_cast<std::uint32_t>(scene.materials.size())),
-      fluorophores(static_cast<std::uint32_t>(scene.fluorophores.size())) {}
+      fluorophores(static_cast<std::uint32_t>(scene.fluorophores.size())),
+      media(static_cast<std::uint32_t>(scene.media.size())) {}
+
+// Given k wavelengths of a path in the set, the next is in it with probability (n - k)/(N - k).
+PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass) {
+    PassWavelengths result{};
+    result.set = draw_wavelengths(render.seed, pass, render.lambda_min_nm, render.lambda_max_nm);
+    result.pair_weight_nm = pair_weight_nm(render.lambda_min_nm, render.lambda_max_nm);
+    const double all = render.lambda_max_nm - render.lambda_min_nm + 1, drawn = STOKES_WAVELENGTHS;
+    for (std::size_t i = 0; i + 1 < result.chain.size(); ++i) {
+        const double k = static_cast<double>(i) + 1.0;
+        result.chain[i] = (all - k) / (drawn - k) / result.pair_weight_nm;
+    }
+    return result;
+}
 
 std::vector<double> light_probabilities(const Scene& scene) {
     std::vector<double> power;
@@ -54,28 +80,50 @@ std::vector<double> light_probabilities(const Scene& scene) {
     return power;
 }
 
-std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, const WavelengthSet& set,
-                                                        double pair_weight) {
+std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
+                                                        const WavelengthSet& set, double pair_weight) {
     std::array<Flux16, STOKES_WAVELENGTHS> rows{};
+    const double sum = fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
     for (std::size_t ex = 0; ex < set.size(); ++ex)
-        for (std::size_t em = 0; em < set.size(); ++em)
-            if (set[em] > set[ex])
-                rows[ex].v[em] = static_cast<float>(fluorophore.conversion * fluorophore.excitation.at(set[ex]) *
-                                                    fluorophore.emission.at(set[em]) * pair_weight);
+        for (std::size_t em = 0; em < set.size(); ++em) {
+            if (set[em] <= set[ex]) continue;
+            const double emitted = transport == Transport::paper
+                                       ? fluorophore.conversion * fluorophore.emission.at(set[em])
+                                       : fluorophore.quantum_yield * fluorophore.emission.at(set[em]) / sum *
+                                             set[ex] / set[em];
+            rows[ex].v[em] = static_cast<float>(emitted * fluorophore.excitation.at(set[ex]) * pair_weight);
+        }
     return rows;
 }
 
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
                               const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons) {
-    const RenderSettings& render = scene.render;
-    const WavelengthSet set = draw_wavelengths(render.seed, pass, render.lambda_min_nm, render.lambda_max_nm);
+    return make_pass_spectra(scene, probabilities, surface_area_mm2, pass_wavelengths(scene.render, pass), pass,
+                             photons);
+}
+
+PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
+                              const std::vector<double>& surface_area_mm2, const PassWavelengths& wavelengths,
+                              std::uint32_t pass, std::uint32_t photons) {
+    const WavelengthSet& set = wavelengths.set;
     PassSpectra result;
-    result.constants = make_constants(render, set, pass, photons);
+    result.constants = make_constants(scene.render, wavelengths, pass, photons);
     for (const Material& material : scene.materials) result.rows.push_back(sampled(material.reflectance, set));
-    const double pair_weight = pair_weight_nm(render.lambda_min_nm, render.lambda_max_nm);
     for (const Fluorophore& fluorophore : scene.fluorophores) {
         result.rows.push_back(sampled(fluorophore.excitation, set));
-        for (const Flux16& row : reradiation_rows(fluorophore, set, pair_weight)) result.rows.push_back(row);
+        for (const Flux16& row :
+             reradiation_rows(fluorophore, scene.render.transport, set, wavelengths.pair_weight_nm))
+            result.rows.push_back(row);
+    }
+    for (const Medium& medium : scene.media) {
+        Flux16 sigma_t{}, albedo{};
+        for (std::size_t i = 0; i < set.size(); ++i) {
+            const double s = medium.sigma_s.at(set[i]), t = s + medium.sigma_a.at(set[i]);
+            sigma_t.v[i] = static_cast<float>(t);
+            albedo.v[i] = static_cast<float>(s / t);
+        }
+        result.rows.push_back(sigma_t);
+        result.rows.push_back(albedo);
     }
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const Light& light = scene.lights[i];

@@ -1,6 +1,7 @@
 // What a pass's sixteen wavelengths make of the scene's spectra.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,14 +13,29 @@
 namespace stokes {
 
 // Where rows of the pass's spectra stand: a row is one Flux16.
-// [0, materials): reflectance; then one excitation row and 16 re-radiation rows a fluorophore.
+// [0, materials): reflectance; then one excitation row and 16 re-radiation rows a fluorophore; then sigma_t [1/mm] and
+// albedo of each medium.
 struct SpectraLayout {
     explicit SpectraLayout(const Scene& scene);
     std::uint32_t excitation_row(int fluorophore) const { return materials + static_cast<std::uint32_t>(fluorophore) * 17; }
     std::uint32_t reradiation_row(int fluorophore) const { return excitation_row(fluorophore) + 1; }
-    std::uint32_t row_count() const { return materials + fluorophores * 17; }
-    std::uint32_t materials, fluorophores;
+    std::uint32_t sigma_row(int medium) const {
+        return materials + fluorophores * 17 + static_cast<std::uint32_t>(medium) * 2;
+    }
+    std::uint32_t row_count() const { return materials + fluorophores * 17 + media * 2; }
+    std::uint32_t materials, fluorophores, media;
 };
+
+// The wavelengths of a pass, and what keeps sums over those that light is re-radiated from unbiased.
+struct PassWavelengths {
+    WavelengthSet set;
+    double pair_weight_nm;  // of a first re-radiation
+    // Factor on it for light that has been re-radiated k times before; [0] is 1.
+    std::array<double, STOKES_WAVELENGTHS> chain;
+};
+
+// Those of a render's pass: drawn uniformly, PHYSICS section 2.
+PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass);
 
 struct PassSpectra {
     PassConstants constants;           // all but offset_mm
@@ -35,10 +51,15 @@ std::vector<double> light_probabilities(const Scene& scene);
 // surface_area_mm2: per light, of its emitting surface (beams: unused).
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
                               const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons);
+PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
+                              const std::vector<double>& surface_area_mm2, const PassWavelengths& wavelengths,
+                              std::uint32_t pass, std::uint32_t photons);
 
-// Re-radiation matrix of eq. 1-2 at a wavelength set: [ex][em] = conversion E(ex) F(em) pair weight where em > ex
-// (Stokes), else 0. Flux at ex [W/nm] times it is flux at em [W/nm].
-std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, const WavelengthSet& set,
-                                                        double pair_weight);
+// Re-radiation matrix at a wavelength set: [ex][em], 0 unless em > ex (Stokes). Flux at ex [W/nm] times it is flux at
+// em [W/nm]. Model `paper`, eq. 1-2: conversion E(ex) F(em) pair weight.
+// The others: quantum yield E(ex) f(em) ex/em pair weight, f the emission as photons per nm, its sum over 300..830 nm
+// one (PHYSICS section 4, without c).
+std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
+                                                        const WavelengthSet& set, double pair_weight);
 
 }  // namespace stokes

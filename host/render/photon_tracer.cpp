@@ -52,6 +52,8 @@ PhotonTracer::PhotonTracer(const Device& device, std::uint32_t paths)
     deposit_ = subsurface.kernel("deposit_exits");
     retrace_fluorescence_ = subsurface.kernel("retrace_fluorescence");
     retrace_elastic_ = subsurface.kernel("retrace_elastic");
+    retrace_exits_ = subsurface.kernel("retrace_exits");
+    fold_exits_ = Program(device, "fold_exits.cl").kernel("fold_exits");
     sum_ = Program(device, "sum_ledgers.cl").kernel("sum_ledgers");
 }
 
@@ -63,10 +65,11 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
     std::uint32_t count = photons, event = 0;
     for (; count > 0; ++event) {
         trace_.launch(count, alive_, count, scene.nodes, scene.blocks, scene.grid, rays_, hits_);
-        const ListCounts lists = make_lists(scene, pass, count, event);
         EventRound round{};
         round.event = event;
         round.last = event + 1 >= round_limit ? 1 : 0;
+        round.count = count;
+        const ListCounts lists = make_lists(scene, pass, round);
         round.count = lists.diffuse;
         scatter_at_surfaces(pass, round, maps[STOKES_MAP_SURFACE]);
         scatter_below_surfaces(scene, pass, round, lists, maps);
@@ -77,14 +80,10 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
 }
 
 // Sorts the arrived photons into the lists alive, diffuse, fluorescence, elastic; the rest has ended.
-ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t count,
-                                    std::uint32_t event) {
-    const std::uint32_t chunks = chunks_of(count);
-    EventRound round{};
-    round.count = count;
-    round.event = event;
+ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round) {
+    const std::uint32_t count = round.count, chunks = chunks_of(count);
     classify_.launch(count, round, pass.constants, alive_, rays_, hits_, flux_, scene.triangles, scene.materials,
-                     scene.shapes, points_, ledgers_, kinds_);
+                     scene.shapes, pass.rows, points_, ledgers_, kinds_);
     count_.launch(chunks, count, chunk_size, kinds_, chunk_counts_);
     scan_.launch(1, chunks, chunk_counts_, totals_);
     write_.launch(chunks, count, chunk_size, alive_, kinds_, chunk_counts_, next_alive_, diffuse_, fluorescence_,
@@ -103,40 +102,110 @@ void PhotonTracer::scatter_at_surfaces(const PassBuffers& pass, EventRound round
     refused_slots_ += map.advance(round.count);
 }
 
-// Exits stand in the order fluorescence, single, multiple.
+namespace {
+
+// The exits of one list of events that go to one map.
+struct ExitGroup {
+    std::uint32_t component, sampler;
+    bool fluorescent;  // of the list of fluorescence, else of the elastic one
+};
+
+// A list's groups follow each other, those of fluorescence first.
+std::vector<ExitGroup> exit_groups(Transport transport) {
+    if (transport == Transport::paper)
+        return {{STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_PAPER, true},
+                {STOKES_MAP_SINGLE, STOKES_SAMPLER_PAPER, false},
+                {STOKES_MAP_MULTIPLE, STOKES_SAMPLER_PAPER, false}};
+    return {{STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_DIRECT, true},
+            {STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_SCATTERED, true},
+            {STOKES_MAP_SINGLE, STOKES_SAMPLER_DIRECT, false},
+            {STOKES_MAP_MULTIPLE, STOKES_SAMPLER_SCATTERED, false}};
+}
+
+}  // namespace
+
 void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
                                           const ListCounts& lists, PhotonMaps& maps) {
-    const std::array<std::uint32_t, 3> counts = {lists.fluorescence, lists.elastic, lists.elastic};
-    const std::array<std::uint32_t, 3> first = {0, lists.fluorescence, lists.fluorescence + lists.elastic};
-    const std::uint32_t exits = lists.fluorescence + 2 * lists.elastic;
-    if (exits == 0) return;
-    std::array<EventRound, 3> rounds;
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        maps[c].reserve(counts[c]);
-        rounds[c] = round;
-        rounds[c].count = counts[c];
-        rounds[c].component = c;
-        rounds[c].first_exit = first[c];
-        rounds[c].second_exit = first[STOKES_MAP_MULTIPLE];
-        rounds[c].first_slot = maps[c].used();
-        rounds[c].slot_limit = maps[c].capacity();
-        sample_exits_.launch(counts[c], rounds[c], pass.constants, c == STOKES_MAP_FLUORESCENCE ? fluorescence_ : elastic_,
-                             points_, rays_, scene.materials, scene.tables.shapes, scene.tables.mean_rows,
-                             scene.tables.cumulative_rows, exits_, probes_);
+    const bool walking = scene.transport == Transport::walk;
+    if (walking) {
+        EventRound walk = round;
+        walk.count = lists.elastic;
+        walk_below_surfaces(scene, pass, walk, maps);
     }
+    const std::vector<ExitGroup> groups = exit_groups(scene.transport);
+    std::vector<EventRound> rounds;
+    std::uint32_t exits = 0;
+    for (const ExitGroup& group : groups) {
+        EventRound r = round;
+        r.count = group.fluorescent ? lists.fluorescence : walking ? 0 : lists.elastic;
+        r.component = group.component;
+        r.sampler = group.sampler;
+        r.first_exit = exits;
+        exits += r.count;
+        rounds.push_back(r);
+    }
+    if (exits == 0) return;
+    for (EventRound& r : rounds)
+        sample_exits_.launch(r.count, r, pass.constants, r.component == STOKES_MAP_FLUORESCENCE ? fluorescence_ : elastic_,
+                             points_, rays_, scene.materials, pass.rows, scene.tables.shapes, scene.tables.mean_rows,
+                             scene.tables.cumulative_rows, exits_, probes_);
     trace_probe_.launch(exits, exits, scene.nodes, scene.blocks, scene.grid, scene.triangles, probes_, probe_hits_);
     place_exits_.launch(exits, exits, probes_, probe_hits_, scene.triangles, exits_);
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        deposit_.launch(counts[c], rounds[c], pass.constants, scene.materials, pass.rows, scene.tables.shapes, scene.tables.at_wavelengths,
-                        exits_, flux_, ledgers_, maps[c].heads(), maps[c].flux());
-        deposits_ += counts[c];
-        refused_slots_ += maps[c].advance(counts[c]);
+    if (scene.transport == Transport::conserving)
+        fold_exits_.launch(exits, exits, pass.constants, scene.nodes, scene.blocks, scene.grid, scene.triangles, probes_,
+                           exits_);
+    for (EventRound& r : rounds) {
+        PhotonMap& map = maps[r.component];
+        map.reserve(r.count);
+        r.first_slot = map.used();
+        r.slot_limit = map.capacity();
+        deposit_.launch(r.count, r, pass.constants, scene.materials, pass.rows, scene.tables.shapes,
+                        scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(), map.flux());
+        deposits_ += r.count;
+        refused_slots_ += map.advance(r.count);
     }
-    retrace_fluorescence_.launch(counts[STOKES_MAP_FLUORESCENCE], rounds[STOKES_MAP_FLUORESCENCE], pass.constants, exits_,
-                                 scene.materials, pass.rows, maps[STOKES_MAP_FLUORESCENCE].flux(), rays_, flux_, ledgers_);
-    retrace_elastic_.launch(counts[STOKES_MAP_SINGLE], rounds[STOKES_MAP_SINGLE], pass.constants, exits_, rays_, flux_,
-                            ledgers_);
     probes_traced_ += exits;
+    trace_on(scene, pass, rounds, maps);
+}
+
+// Each path that enters a medium leaves it at most once, in one of three maps; it takes a slot in all of them.
+void PhotonTracer::walk_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
+                                       PhotonMaps& maps) {
+    if (round.count == 0) return;
+    if (!walk_) walk_.emplace(Program(device_, "walk_photons.cl").kernel("walk_photons"));
+    WalkSlots slots{};
+    for (std::uint32_t m = 0; m < 3; ++m) {
+        maps[m].reserve(round.count);
+        slots.first[m] = maps[m].used();
+        slots.limit[m] = maps[m].capacity();
+    }
+    walk_->launch(round.count, round, slots, pass.constants, elastic_, points_, scene.bodies, scene.nodes, scene.blocks,
+                  scene.grid, scene.triangles, scene.materials, pass.rows, rays_, flux_, ledgers_, maps[0].heads(),
+                  maps[0].flux(), maps[1].heads(), maps[1].flux(), maps[2].heads(), maps[2].flux());
+    deposits_ += round.count;
+    for (std::uint32_t m = 0; m < 3; ++m) maps[m].advance(round.count);
+}
+
+// Sends on what left: rounds as scatter_below_surfaces made them.
+void PhotonTracer::trace_on(const DeviceScene& scene, const PassBuffers& pass, std::vector<EventRound> rounds,
+                            const PhotonMaps& maps) {
+    const auto pair = [&](std::size_t first, std::size_t second) {
+        EventRound r = rounds[first];
+        r.second_exit = rounds[second].first_exit;
+        r.second_slot = rounds[second].first_slot;
+        r.second_limit = rounds[second].slot_limit;
+        return r;
+    };
+    if (scene.transport == Transport::paper) {
+        retrace_fluorescence_.launch(rounds[0].count, rounds[0], pass.constants, exits_, scene.materials, pass.rows,
+                                     maps[STOKES_MAP_FLUORESCENCE].flux(), rays_, flux_, ledgers_);
+        retrace_elastic_.launch(rounds[1].count, pair(1, 2), pass.constants, exits_, rays_, flux_, ledgers_);
+        return;
+    }
+    for (const std::size_t first : {std::size_t{0}, std::size_t{2}})
+        retrace_exits_.launch(rounds[first].count, pair(first, first + 1), pass.constants, exits_, scene.materials,
+                              maps[rounds[first].component].flux(), maps[rounds[first + 1].component].flux(), rays_,
+                              flux_, ledgers_);
 }
 
 PhotonAccount PhotonTracer::close_account(std::uint32_t photons) {
@@ -144,10 +213,14 @@ PhotonAccount PhotonTracer::close_account(std::uint32_t photons) {
     sum_.launch(chunks, photons, chunk_size, ledgers_, sums_);
     PhotonAccount account;
     for (const LedgerSums& sums : sums_.download(chunks)) {
-        for (std::size_t k = 0; k < account.flux.size(); ++k) account.flux[k] += static_cast<double>(sums.flux[k]);
+        for (std::size_t k = 0; k < account.energy.size(); ++k) {
+            account.energy[k] += static_cast<double>(sums.light[k].energy);
+            account.photons[k] += static_cast<double>(sums.light[k].photons);
+        }
         for (std::size_t k = 0; k < account.fates.size(); ++k) account.fates[k] += sums.fates[k];
         account.rays += sums.rays;
         account.missed_exits += sums.missed_exits;
+        account.reflections += sums.reflections;
     }
     account.rays += probes_traced_;
     account.refused_slots = refused_slots_;

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "host/device/device.hpp"
 #include "host/render/device_scene.hpp"
@@ -22,14 +24,16 @@ struct PassBuffers {
 
 using PhotonMaps = std::array<PhotonMap, STOKES_MAP_COUNT>;  // by STOKES_MAP_*
 
-// What became of a pass's photons. Flux: sums over the pass's wavelengths [W/nm], in the order of LedgerSums.
+// What became of a pass's photons. Sums over the pass's wavelengths, in the order of LedgerSums, of flux [W/nm] and of
+// flux times wavelength [W].
 struct PhotonAccount {
-    std::array<double, 8> flux{};
+    std::array<double, 8> energy{}, photons{};
     std::array<std::uint64_t, STOKES_FATE_COUNT> fates{};  // paths by STOKES_FATE_*
     std::uint64_t rays = 0;           // photon rays and probes
     std::uint64_t missed_exits = 0;   // deposits whose exit point found no surface
     std::uint64_t refused_slots = 0;  // deposits a full map had no slot for
     std::uint64_t deposits = 0;       // stored or refused, missed exits included
+    std::uint64_t reflections = 0;    // specular
 };
 
 class PhotonTracer {
@@ -41,15 +45,19 @@ class PhotonTracer {
     PhotonAccount trace(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons, PhotonMaps& maps);
 
   private:
-    ListCounts make_lists(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t count, std::uint32_t event);
+    ListCounts make_lists(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);
     void scatter_at_surfaces(const PassBuffers& pass, EventRound round, PhotonMap& map);
     void scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
                                 const ListCounts& lists, PhotonMaps& maps);
+    void walk_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round, PhotonMaps& maps);
+    void trace_on(const DeviceScene& scene, const PassBuffers& pass, std::vector<EventRound> rounds,
+                  const PhotonMaps& maps);
     PhotonAccount close_account(std::uint32_t photons);
 
     Device device_;
     Kernel emit_, trace_, trace_probe_, classify_, count_, scan_, write_, scatter_;
-    Kernel sample_exits_, place_exits_, deposit_, retrace_fluorescence_, retrace_elastic_, sum_;
+    Kernel sample_exits_, place_exits_, deposit_, retrace_fluorescence_, retrace_elastic_, retrace_exits_, fold_exits_, sum_;
+    std::optional<Kernel> walk_;  // compiled when it is first needed
     Buffer<Ray> rays_;
     Buffer<Hit> hits_;
     Buffer<Flux16> flux_;

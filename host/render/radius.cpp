@@ -31,6 +31,7 @@ double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint
     const std::uint32_t columns = (camera.width + tile_edge - 1) / tile_edge;
     const std::uint32_t rows = (camera.height + tile_edge - 1) / tile_edge;
     std::vector<double> area(std::size_t{columns} * rows, 0.0), count(area.size(), 0.0);
+    std::vector<double> direct(area.size(), 0.0), reflected(area.size(), 0.0);  // points
     const glm::dvec3 eye(camera.position_x, camera.position_y, camera.position_z);
     const glm::dvec3 corner(camera.corner_x, camera.corner_y, camera.corner_z);
     const glm::dvec3 right(camera.right_x, camera.right_y, camera.right_z);
@@ -38,11 +39,13 @@ double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint
     const glm::dvec3 axis = glm::normalize(glm::cross(right, down));
     const double pixel_area = glm::length(right) * glm::length(down);  // at distance 1 along the axis
     for (const GatherPoint& p : points) {
-        if (p.maps == 0) continue;
+        const std::uint32_t tile = p.pixel / camera.width / tile_edge * columns + p.pixel % camera.width / tile_edge;
+        if (p.reflected != 0) reflected[tile] += 1.0;
+        if (p.reflected != 0 || p.maps == 0) continue;
+        direct[tile] += 1.0;
         const glm::dvec3 to(p.x - eye.x, p.y - eye.y, p.z - eye.z);
         const double depth = glm::dot(to, axis);
         const double facing = std::abs(glm::dot(to, glm::dvec3(p.nx, p.ny, p.nz)));
-        const std::uint32_t tile = p.pixel / camera.width / tile_edge * columns + p.pixel % camera.width / tile_edge;
         area[tile] += pixel_area * depth * depth * depth / std::max(facing, 1e-3 * depth);
     }
     for (const PhotonHead& photon : photons) {
@@ -58,7 +61,9 @@ double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint
     }
     std::vector<double> density;
     for (std::size_t tile = 0; tile < area.size(); ++tile)
-        if (area[tile] > 0.0 && count[tile] > 0.0) density.push_back(count[tile] / area[tile]);
+        // Surfaces that reflect lie under the pixels of their reflections as well.
+        if (area[tile] > 0.0 && count[tile] > 0.0)
+            density.push_back(count[tile] / (area[tile] * (1.0 + reflected[tile] / direct[tile])));
     if (density.empty()) return 0.0;
     const auto middle = density.begin() + static_cast<std::ptrdiff_t>(density.size() / 2);
     std::nth_element(density.begin(), middle, density.end());

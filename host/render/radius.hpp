@@ -18,7 +18,8 @@ double pass_radius_mm(double first_mm, double alpha, std::uint32_t pass);
 
 // First radius [mm] from how thickly a trial pass's photons lie where the camera looks: the picture is cut into square
 // tiles, and the median over tiles of photons per surface area [1/mm^2] sets the disk that catches twenty of them.
-// points: what the camera's rays see, one a pixel; photons: positions in the maps. 0 when the camera sees no photon.
+// points: what the camera's rays see, one a pixel; those in reflections count as the rest of their tile. photons:
+// positions in the maps. 0 when the camera sees no photon.
 double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint>& points,
                        const std::vector<PhotonHead>& photons);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "host/core/error.hpp"
-#include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
 
 namespace stokes {
@@ -24,15 +23,6 @@ std::uint32_t checked_photons(const Scene& scene) {
     return static_cast<std::uint32_t>(photons);
 }
 
-PassBuffers make_pass_buffers(const Device& device, const Scene& scene) {
-    PassBuffers pass;
-    pass.constants = Buffer<PassConstants>(device, "pass constants", 1);
-    pass.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count());
-    pass.photon_flux = Buffer<Flux16>(device, "photon flux of the lights", scene.lights.size());
-    pass.radiance = Buffer<Flux16>(device, "radiance of the lights", scene.lights.size());
-    return pass;
-}
-
 }  // namespace
 
 Renderer::Renderer(const Device& device, const Scene& scene)
@@ -40,16 +30,15 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       scene_(scene),
       on_device_(device, scene),
       photons_(checked_photons(scene)),
-      pass_(make_pass_buffers(device, scene)),
+      pass_(device, scene_, on_device_),
       tracer_(device, photons_),
       hash_builder_(device, first_capacity(photons_)),
       hash_(device, "photon map", first_capacity(photons_)),
       maps_(make_maps()),
       view_(device, make_camera_record(scene.camera, scene.film.width, scene.film.height)),
       gather_(device, view_.camera()),
-      resample_(Program(device, "resample_tables.cl").kernel("resample_table")),
-      trace_(Program(device, "trace_rays.cl").kernel("trace_closest_all")),
-      wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS),
+      trace_(on_device_.has_fresnel ? Program(device, "see_surfaces.cl").kernel("trace_seen")
+                                    : Program(device, "trace_rays.cl").kernel("trace_closest_all")),
       camera_rays_(device, "camera rays", view_.ray_count()),
       camera_hits_(device, "camera hits", view_.ray_count()),
       film_(device, "film",
@@ -66,12 +55,12 @@ PhotonMaps Renderer::make_maps() {
 // By a trial pass that leaves nothing in the film. Its photons have the same flux at every wavelength: a lamp of few
 // wavelengths might be dark at all of those that were drawn.
 double Renderer::find_first_radius() {
-    prepare_pass(trial_pass);
+    pass_.make(trial_pass, photons_);
     Flux16 even;
     std::fill(std::begin(even.v), std::end(even.v), 1.0f);
-    pass_.photon_flux.upload(std::vector<Flux16>(scene_.lights.size(), even));
+    pass_.buffers().photon_flux.upload(std::vector<Flux16>(scene_.lights.size(), even));
     for (PhotonMap& map : maps_) map.clear();
-    tracer_.trace(on_device_, pass_, photons_, maps_);
+    tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
     see_points();
     std::vector<PhotonHead> photons;
     for (const PhotonMap& map : maps_)
@@ -88,53 +77,41 @@ double Renderer::radius_of(std::uint32_t pass) const {
 
 void Renderer::render_pass(std::uint32_t pass) {
     const double radius_mm = radius_of(pass);
-    prepare_pass(pass);
+    pass_.make(pass, photons_);
     for (PhotonMap& map : maps_) map.clear();
-    const PhotonAccount account = tracer_.trace(on_device_, pass_, photons_, maps_);
+    const PhotonAccount account = tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
     see_points();
     see_maps(radius_mm);
     book_.add(account, image_weight_nm(scene_.render.lambda_min_nm, scene_.render.lambda_max_nm));
     ++passes_;
 }
 
-// Draws the wavelengths and brings every spectrum and table onto them.
-void Renderer::prepare_pass(std::uint32_t pass) {
-    PassSpectra spectra = make_pass_spectra(scene_, on_device_.light_probability,
-                                            on_device_.light_surface_area_mm2, pass, photons_);
-    spectra.constants.offset_mm = on_device_.offset_mm;
-    pass_.constants.upload(&spectra.constants, 1);
-    pass_.rows.upload(spectra.rows);
-    pass_.photon_flux.upload(spectra.photon_flux);
-    pass_.radiance.upload(spectra.radiance);
-    wavelengths_.upload(spectra.constants.lambda_nm, STOKES_WAVELENGTHS);
-    const DeviceTables& tables = on_device_.tables;
-    const EvenAxis& lambda = tables.wavelengths;
-    resample_.launch(tables.entries, tables.values, static_cast<std::uint32_t>(lambda.count),
-                     static_cast<float>(lambda.first), static_cast<float>(lambda.step), wavelengths_,
-                     tables.at_wavelengths, tables.entries);
-}
-
-// What the camera's rays meet; emitters among it are added to the film.
+// What the camera's rays meet, at the end of all reflections; emitters among it are added to the film.
 void Renderer::see_points() {
-    view_.make_rays(pass_.constants, camera_rays_);
-    trace_.launch(view_.ray_count(), view_.ray_count(), on_device_.nodes, on_device_.blocks, on_device_.grid,
-                  camera_rays_, camera_hits_);
-    gather_.collect_points(seen_scene(), pass_.constants, camera_rays_, camera_hits_, film_);
+    view_.make_rays(pass_.buffers().constants, camera_rays_);
+    if (on_device_.has_fresnel)
+        trace_.launch(view_.ray_count(), view_.camera(), pass_.buffers().constants, on_device_.nodes, on_device_.blocks,
+                      on_device_.grid, on_device_.triangles, on_device_.shapes, on_device_.materials, camera_rays_,
+                      camera_hits_);
+    else
+        trace_.launch(view_.ray_count(), view_.ray_count(), on_device_.nodes, on_device_.blocks, on_device_.grid,
+                      camera_rays_, camera_hits_);
+    gather_.collect_points(seen_scene(), pass_.buffers().constants, camera_rays_, camera_hits_, film_);
 }
 
 GatherScene Renderer::seen_scene() const {
-    return {on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.rows, pass_.radiance};
+    return {on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.buffers().rows, pass_.buffers().radiance};
 }
 
 // Adds the photons to the film, map by map.
 void Renderer::see_maps(double radius_mm) {
-    gather_.measure_disks(on_device_, pass_.constants, static_cast<float>(radius_mm));
+    gather_.measure_disks(on_device_, pass_.buffers().constants, static_cast<float>(radius_mm));
     for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
         const PhotonMap& map = maps_[m];
         if (map.used() == 0) continue;
         hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
                             static_cast<float>(radius_mm));
-        gather_.add_map(m, hash_, seen_scene(), pass_.constants, film_);
+        gather_.add_map(m, hash_, seen_scene(), pass_.buffers().constants, film_);
     }
 }
 

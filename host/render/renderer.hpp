@@ -9,6 +9,7 @@
 #include "host/render/device_scene.hpp"
 #include "host/render/gather.hpp"
 #include "host/render/ledger.hpp"
+#include "host/render/pass_maker.hpp"
 #include "host/render/photon_tracer.hpp"
 #include "host/render/spatial_hash.hpp"
 #include "host/scene/scene.hpp"
@@ -40,7 +41,6 @@ class Renderer {
   private:
     PhotonMaps make_maps();
     double find_first_radius();
-    void prepare_pass(std::uint32_t pass);
     void see_points();
     GatherScene seen_scene() const;
     void see_maps(double radius_mm);
@@ -50,15 +50,14 @@ class Renderer {
     DeviceScene on_device_;
     std::uint32_t photons_;
     double first_radius_mm_ = 0.0;
-    PassBuffers pass_;
+    PassMaker pass_;
     PhotonTracer tracer_;
     HashBuilder hash_builder_;
     SpatialHash hash_;  // of one map at a time
     PhotonMaps maps_;
     CameraView view_;
     Gather gather_;
-    Kernel resample_, trace_;
-    Buffer<float> wavelengths_;
+    Kernel trace_;
     Buffer<Ray> camera_rays_;
     Buffer<Hit> camera_hits_;
     Buffer<FilmValue> film_;

@@ -22,18 +22,20 @@ std::string object(const std::map<std::string, T>& entries) {
     return "{" + result + "\n  }";
 }
 
+std::map<std::string, double> members(const Balance& b) {
+    return {{"emitted", b.emitted},   {"absorbed", b.absorbed}, {"stokes_loss", b.stokes_loss}, {"stored", b.stored},
+            {"escaped", b.escaped},   {"dropped", b.dropped},   {"roulette", b.roulette},       {"created", b.created},
+            {"imbalance", b.imbalance()}};
+}
+
 }  // namespace
 
 void write_stats(const RenderStats& s, const std::string& path) {
     const Ledger& l = s.ledger;
-    const std::map<std::string, double> energy = {
-        {"emitted", l.emitted},   {"absorbed", l.absorbed}, {"stokes_loss", l.stokes_loss}, {"stored", l.stored},
-        {"escaped", l.escaped},   {"dropped", l.dropped},   {"roulette", l.roulette},       {"created", l.created},
-        {"imbalance", l.imbalance()}};
-    const std::map<std::string, std::uint64_t> photons = {{"emitted", l.photons},
-                                                          {"absorbed", l.absorbed_photons},
-                                                          {"escaped", l.escaped_photons},
-                                                          {"dropped", l.dropped_photons}};
+    const std::map<std::string, std::uint64_t> paths = {{"emitted", l.paths},
+                                                        {"absorbed", l.absorbed_paths},
+                                                        {"escaped", l.escaped_paths},
+                                                        {"dropped", l.dropped_paths}};
     const auto rate = [&](std::uint64_t count) { return s.wall_s > 0.0 ? static_cast<double>(count) / s.wall_s : 0.0; };
     std::string text = "{\n";
     const auto add = [&](const char* key, const std::string& value) {
@@ -42,6 +44,7 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("scene", json_quoted(s.scene));
     add("device", json_quoted(s.device));
     add("driver", json_quoted(s.driver));
+    add("transport", json_quoted(s.transport));
     add("passes", number(std::uint64_t{s.passes}));
     add("seed", number(std::uint64_t{s.seed}));
     add("width", std::to_string(s.width));
@@ -59,8 +62,9 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("device_memory_bytes", number(s.device_memory_bytes));
     add("stages", object(s.stages));
     add("dropped", object(s.dropped));
-    add("ledger", object(energy));
-    add("ledger_photons", object(photons));
+    add("ledger", object(members(l.power)));
+    add("ledger_photons", object(members(l.photons)));
+    add("paths", object(paths));
     write_file_atomically(path, text + "\n}\n");
 }
 

@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <numeric>
-#include <random>
 #include <vector>
 
 #include "host/core/error.hpp"
 
 namespace stokes {
 
-namespace {
-
-// Uniform in [0, bound), without the bias of a plain remainder.
-std::uint64_t below(std::mt19937_64& generator, std::uint64_t bound) {
+std::uint64_t uniform_below(std::mt19937_64& generator, std::uint64_t bound) {
     const std::uint64_t limit = generator.max() - generator.max() % bound;
     std::uint64_t draw = generator();
     while (draw >= limit) draw = generator();
     return draw % bound;
 }
-
-}  // namespace
 
 WavelengthSet draw_wavelengths(std::uint32_t seed, std::uint32_t pass, int first_nm, int last_nm) {
     if (last_nm - first_nm + 1 < STOKES_WAVELENGTHS)
@@ -31,7 +25,7 @@ WavelengthSet draw_wavelengths(std::uint32_t seed, std::uint32_t pass, int first
     std::iota(all.begin(), all.end(), first_nm);
     WavelengthSet set;
     for (std::size_t i = 0; i < set.size(); ++i) {  // Fisher-Yates, as far as needed
-        std::swap(all[i], all[i + below(generator, all.size() - i)]);
+        std::swap(all[i], all[i + uniform_below(generator, all.size() - i)]);
         set[i] = all[i];
     }
     std::sort(set.begin(), set.end());

@@ -3,12 +3,16 @@
 
 #include <array>
 #include <cstdint>
+#include <random>
 
 #include "kernels/shared/limits.h"
 
 namespace stokes {
 
 using WavelengthSet = std::array<int, STOKES_WAVELENGTHS>;  // [nm], increasing
+
+// Uniform in [0, bound), bound >= 1, without the bias of a plain remainder; the same on every platform.
+std::uint64_t uniform_below(std::mt19937_64& generator, std::uint64_t bound);
 
 // Integers of [first_nm, last_nm] drawn uniformly without replacement; depends on its arguments alone.
 // The range must hold at least STOKES_WAVELENGTHS integers (InputError).

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "host/core/log.hpp"
+#include <algorithm>
+
 #include "host/core/media_limits.hpp"
 
 namespace stokes {
@@ -49,13 +50,8 @@ Fluorophore read_fluorophore(const std::string& name, const JsonCursor& where, S
             .fail(fmt::format("expected some emission from {} to {} nm, got none at any whole nanometre",
                               first_lambda_nm, last_lambda_nm));
     }
-    const double yield = fluorophore.conversion * emission_sum;
-    if (yield > 1.0) {
-        warn(
-            fmt::format("{}: {}: emits up to {:.3g} times what it takes up (conversion_per_nm times the sum "
-                        "of its emission)",
-                        where.file(), where.path(), yield));
-    }
+    fluorophore.quantum_yield =
+        where.number_or("quantum_yield", std::min(1.0, fluorophore.conversion * emission_sum), unit_range);
     return fluorophore;
 }
 
@@ -65,6 +61,14 @@ Material read_diffuse(const JsonCursor& where, SpectrumReader& spectra) {
     material.kind = MaterialKind::diffuse;
     material.reflectance = spectra.read(where.at("reflectance"), Outside::hold, 1.0);
     return material;
+}
+
+void check_fresnel(const JsonCursor& fresnel, const Material& material, const Scene& scene) {
+    if (material.medium < 0) fresnel.fail("Fresnel reflection needs a medium and subsurface light");
+    const double eta = scene.media[static_cast<std::size_t>(material.medium)].eta;
+    if (eta > largest_green_eta)
+        fresnel.fail(fmt::format("Fresnel reflection needs a medium with eta up to {:g}, got {:g}",
+                                 largest_green_eta, eta));
 }
 
 Material read_translucent(const JsonCursor& where, const Scene& scene) {
@@ -77,6 +81,10 @@ Material read_translucent(const JsonCursor& where, const Scene& scene) {
     if (medium) material.medium = index_of_name(*medium, "media", scene.media);
     if (!medium && material.subsurface) where.fail("missing key \"medium\", which subsurface light needs");
     if (!material.subsurface) material.medium = -1;
+    if (const auto fresnel = where.find("fresnel")) {
+        material.fresnel = fresnel->boolean();
+        if (material.fresnel) check_fresnel(*fresnel, material, scene);
+    }
 
     const auto fluorophore = where.find("fluorophore");
     const auto fraction = where.find("fluorescent_fraction");

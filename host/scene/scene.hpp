@@ -25,8 +25,10 @@ struct Film {
     std::optional<double> exposure_ev;  // of the PNG; none: automatic
 };
 
-// Which subsurface transport the scene's translucent materials use.
-enum class Transport { paper };
+// Which subsurface transport the scene's translucent materials use: PHYSICS sections 3, 4 and 5.
+enum class Transport { paper, conserving, walk };
+// As scene files and the command line spell them, in the order of Transport.
+inline const std::vector<std::string> transport_words = {"paper", "conserving", "walk"};
 
 inline constexpr std::int64_t most_photons_per_pass = 0x10000000;
 
@@ -38,7 +40,8 @@ struct RenderSettings {
     std::uint32_t seed = 1;
     int lambda_min_nm = 300;  // inclusive
     int lambda_max_nm = 780;  // inclusive
-    Transport transport = Transport::paper;
+    Transport transport = Transport::conserving;
+    bool first_collision_only = false;  // walk: fluorophores take light up at its first collision only
 };
 
 // sigma_s and sigma_a [1/mm] with the scene's scale factors already applied.
@@ -46,7 +49,7 @@ struct Medium {
     std::string name;
     Spectrum sigma_s;
     Spectrum sigma_a;
-    double eta = 1.0;         // refractive index, for the refraction angle
+    double eta = 1.0;         // refractive index
     double dipole_eta = 1.0;  // refractive index in the dipole's A; 1 where the Fresnel factor is taken as 1
 };
 
@@ -54,7 +57,8 @@ struct Fluorophore {
     std::string name;
     Spectrum excitation;         // relative
     Spectrum emission;           // relative
-    double conversion = 2.0e-2;  // eta of eq. 1 [1/nm]
+    double conversion = 2.0e-2;  // paper: eta of eq. 1 [1/nm]
+    double quantum_yield = 1.0;  // conserving, walk: photons emitted for each taken up, in [0, 1]
 };
 
 enum class MaterialKind { black, diffuse, translucent };
@@ -67,6 +71,7 @@ struct Material {
     int fluorophore = -1;                            // translucent: index into Scene::fluorophores, -1: none
     double fluorescent_fraction = 0.0;               // c in [0, 1]
     bool subsurface = true;                          // false: surface fluorescence, light leaves where it came in
+    bool fresnel = false;  // the surface reflects, outside and within; conserving, walk, with subsurface only
 };
 
 struct Mesh {

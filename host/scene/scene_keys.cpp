@@ -21,12 +21,15 @@ const ObjectKeys spectrum_constant{"spectrum_constant", {"constant"}, {}};
 
 const ObjectKeys medium{
     "medium", {"sigma_s_per_mm", "sigma_a_per_mm"}, {"scale_sigma_s", "scale_sigma_a", "eta", "dipole_eta"}};
-const ObjectKeys fluorophore{"fluorophore", {"excitation", "emission"}, {"conversion_per_nm"}};
+const ObjectKeys fluorophore{
+    "fluorophore", {"excitation", "emission"}, {"conversion_per_nm", "quantum_yield"}};
 
 const ObjectKeys material_diffuse{"material_diffuse", {"type", "reflectance"}, {}};
 const ObjectKeys material_black{"material_black", {"type"}, {}};
 const ObjectKeys material_translucent{
-    "material_translucent", {"type"}, {"medium", "fluorophore", "fluorescent_fraction", "subsurface"}};
+    "material_translucent",
+    {"type"},
+    {"medium", "fluorophore", "fluorescent_fraction", "subsurface", "fresnel"}};
 
 const ObjectKeys beam_disk{
     "beam_disk",

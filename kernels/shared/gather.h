@@ -15,15 +15,19 @@
 // Random places of a disk that are tried at most.
 #define STOKES_GATHER_MOST_TRIALS 32u
 
-// The point that a camera ray sees. Written by collect_points, read by gather_radiance, one per camera ray.
+// The point that a camera ray sees, directly or mirrored by smooth surfaces. Written by collect_points, read by
+// gather_radiance, one per camera ray.
 typedef struct GatherPoint {
     float x, y, z;          // [mm]
     unsigned int pixel;     // y * width + x
     float nx, ny, nz;       // outward geometric normal, unit length
     unsigned int material;  // index into the MaterialRecord buffer
     unsigned int maps;      // bit STOKES_MAP_*: photons of this map count; 0: nothing to gather
-    float weight;           // 1 / the share of the disk on the surface, in the mean; written by measure_disks
-    unsigned int pad0, pad1;
+    // Factor on the density estimate: MaterialRecord.exit_scale where the surface reflects, else 1 (collect_points),
+    // times 1 / the share of the disk on the surface, in the mean (measure_disks).
+    float weight;
+    unsigned int reflected;  // 1: seen in a reflection; 0: the point lies on the pixel's own ray
+    unsigned int pad;
 } GatherPoint;
 STOKES_ASSERT_SIZE(GatherPoint, 48);
 

@@ -4,19 +4,28 @@
 
 #include "limits.h"
 
+// The transport models of PHYSICS sections 3, 4 and 5.
+#define STOKES_TRANSPORT_PAPER 0u
+#define STOKES_TRANSPORT_CONSERVING 1u
+#define STOKES_TRANSPORT_WALK 2u
+
 // Written by the host once per pass.
 typedef struct PassConstants {
     float lambda_nm[16];  // the pass's wavelengths, increasing
     // Radiance [W mm^-2 sr^-1 nm^-1] -> tristimulus values of the film [cd/m^2]: 683.002 lm/W * 1e6 mm^2/m^2 *
     // colour matching function at lambda * N/n (PHYSICS of the image estimator: N/n times the sum over the set).
     float to_x[16], to_y[16], to_z[16];
+    // Factor on the re-radiation rows for light that has been re-radiated k times before, PHYSICS section 2: the rows
+    // hold the pair weight, which is that of the first time; chain[0] = 1.
+    float chain[16];
     unsigned int seed;         // of the whole render
     unsigned int pass;         // index of the pass, from 0
     unsigned int photons;      // photons emitted in this pass
     float offset_mm;           // rays start this far above the surface they leave
-    float wavelengths;         // N: how many wavelengths the set was drawn from
-    unsigned int pad0, pad1, pad2;
+    unsigned int transport;    // STOKES_TRANSPORT_*
+    unsigned int first_collision_only;  // `walk`: 1: fluorophores take light up at its first collision only
+    unsigned int pad0, pad1;
 } PassConstants;
-STOKES_ASSERT_SIZE(PassConstants, 288);
+STOKES_ASSERT_SIZE(PassConstants, 352);
 
 #endif

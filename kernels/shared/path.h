@@ -21,37 +21,48 @@
 #define STOKES_EVENT_NONE 0u
 #define STOKES_EVENT_DIFFUSE 1u
 #define STOKES_EVENT_FLUORESCENCE 2u
-#define STOKES_EVENT_ELASTIC 3u
+#define STOKES_EVENT_ELASTIC 3u   // model `walk`: everything that happens below a surface
+#define STOKES_EVENT_SPECULAR 4u  // reflected at a smooth surface; only the ray changes
 
-// Sums over the 16 wavelengths of the flux [W/nm] along one path; at its end
+// Sums over a pass's 16 wavelengths.
+typedef struct LightSum {
+    float energy;   // of flux [W/nm]
+    float photons;  // of flux times wavelength [W]: h c times a number of photons per second
+} LightSum;
+STOKES_ASSERT_SIZE(LightSum, 8);
+
+// The light along one path, in energy and in photons; at its end
 // emitted + created = absorbed + stokes_loss + escaped + dropped + roulette. Written by every photon kernel.
 typedef struct PathLedger {
-    float emitted;
-    float absorbed;
-    float stokes_loss;  // taken up by a fluorophore and not re-emitted
-    float escaped;
-    float dropped;      // cut off: missed exits, fluorescence without a slot, the limit of events, overflow
-    float roulette;     // ended by Russian roulette minus what survivors were raised by; mean zero
-    float created;      // made by power tables above one
-    float stored;       // put into the maps
+    LightSum emitted;
+    LightSum absorbed;     // by surfaces and media
+    LightSum stokes_loss;  // taken up by a fluorophore and not re-emitted
+    LightSum escaped;
+    LightSum dropped;      // cut off: missed exits, fluorescence without a slot, the limit of events, overflow
+    LightSum roulette;     // ended by Russian roulette minus what survivors were raised by, and what random weights add
+                           // and take; mean zero
+    LightSum created;      // model `paper`: made by power tables above one
+    LightSum stored;       // put into the maps
     unsigned int fate;           // STOKES_FATE_*
     unsigned int missed_exits;   // deposits dropped because the exit point found no surface
     unsigned int rays;           // rays traced for it so far, probes not counted
     float reference_flux;        // mean flux at emission [W/nm], the measure for roulette
     unsigned int conversions;    // how often its light has been re-radiated
-    unsigned int pad[3];
+    unsigned int reflections;    // how often it was reflected specularly
+    unsigned int pad[2];
 } PathLedger;
-STOKES_ASSERT_SIZE(PathLedger, 64);
+STOKES_ASSERT_SIZE(PathLedger, 96);
 
 // The accounts of a chunk of paths, added up. Written by sum_ledgers, read back by the host once a pass.
 typedef struct LedgerSums {
-    float flux[8];          // emitted, absorbed, stokes_loss, escaped, dropped, roulette, created, stored [W/nm]
+    LightSum light[8];      // emitted, absorbed, stokes_loss, escaped, dropped, roulette, created, stored
     unsigned int fates[7];  // paths by STOKES_FATE_*
     unsigned int missed_exits;
     unsigned int rays;
-    unsigned int pad[3];
+    unsigned int reflections;
+    unsigned int pad[2];
 } LedgerSums;
-STOKES_ASSERT_SIZE(LedgerSums, 80);
+STOKES_ASSERT_SIZE(LedgerSums, 112);
 
 // Where a path meets a surface. Written by classify_photons.
 typedef struct SurfacePoint {
@@ -62,31 +73,53 @@ typedef struct SurfacePoint {
 } SurfacePoint;
 STOKES_ASSERT_SIZE(SurfacePoint, 32);
 
+// EventRound.sampler: how exit points are found and what leaves there.
+#define STOKES_SAMPLER_PAPER 0u      // distance from the component's power table, PHYSICS section 3
+#define STOKES_SAMPLER_DIRECT 1u     // straight from the first collision to the surface: G0 of PHYSICS section 4
+#define STOKES_SAMPLER_SCATTERED 2u  // distance from the Green's function table: G1
+
 // One subsurface exit. Written by sample_exits, place_exits and deposit_exits.
 typedef struct ExitPoint {
     float x, y, z;     // on the surface [mm]
-    float r_mm;        // distance from the entry in the tangent plane; negated where no surface was found
+    float r_mm;        // distance from the entry in the tangent plane, or from the foot of the first collision; negated
+                       // where no surface was found
     float nx, ny, nz;  // surface normal there, outward, unit length
-    float row;         // where the power tables are read: refraction angle [deg]
+    float row;         // PAPER: refraction angle [deg]; DIRECT: way from the first collision to the surface [mm];
+                       // SCATTERED: depth of the first collision [mm]
     unsigned int path;
     unsigned int material;
-    float kept;       // sum of the deposited flux over the wavelengths [W/nm]
-    float converted;  // fluorescence: sum of the flux before the power table [W/nm]
+    float way_mm;        // to the first collision, along the refracted ray
+    float scale;         // factor on what leaves: PAPER 1, DIRECT 1/density of the direction, SCATTERED 1/density of r
+    LightSum kept;         // the deposited flux
+    LightSum event_light;  // PAPER: re-emitted as fluorescence; DIRECT: what the first collision sends on; SCATTERED:
+                           // what it takes up
 } ExitPoint;
-STOKES_ASSERT_SIZE(ExitPoint, 48);
+STOKES_ASSERT_SIZE(ExitPoint, 64);
 
 // One round of events: passed by value to the photon kernels.
 typedef struct EventRound {
     unsigned int count;      // work-items
     unsigned int event;      // index of the round, from 0
     unsigned int component;  // STOKES_MAP_*: which map is being written
+    unsigned int sampler;    // STOKES_SAMPLER_*
     unsigned int first_exit;    // first of the component's exits in the exit buffer
     unsigned int first_slot;    // first free slot of the component's map
     unsigned int slot_limit;    // capacity of the map
-    unsigned int second_exit;   // elastic: first exit of multiple scattering
+    unsigned int second_exit;   // the other exits of the same events: first of them in the exit buffer,
+    unsigned int second_slot;   // in their map,
+    unsigned int second_limit;  // and the capacity of that map
     unsigned int last;          // 1: paths that would go on are cut and counted
+    unsigned int pad;
 } EventRound;
-STOKES_ASSERT_SIZE(EventRound, 32);
+STOKES_ASSERT_SIZE(EventRound, 48);
+
+// Where walk_photons stores, by map STOKES_MAP_*: F, S and M. Passed by value.
+typedef struct WalkSlots {
+    unsigned int first[3];  // first free slot
+    unsigned int limit[3];  // capacity
+    unsigned int pad[2];
+} WalkSlots;
+STOKES_ASSERT_SIZE(WalkSlots, 32);
 
 // Read back by the host once a round. Written by scan_lists.
 typedef struct ListCounts {

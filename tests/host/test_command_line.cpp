@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "host/image/exr.hpp"
 #include "tests/support/catch.hpp"
@@ -13,6 +14,17 @@ double imbalance(const nlohmann::json& ledger) {
     for (const char* end : {"absorbed", "stokes_loss", "escaped", "dropped", "roulette"})
         balance -= ledger[end].get<double>();
     return std::abs(balance) / ledger["emitted"].get<double>();
+}
+
+// The sphere's scene with one part replaced, its files found from anywhere.
+std::string edited_sphere_scene(const std::string& what, const std::string& with) {
+    std::string text = file_content(sphere_scene);
+    const std::size_t begin = text.find(what);
+    if (begin == std::string::npos) throw std::logic_error("not in the scene: " + what);
+    text.replace(begin, what.size(), with);
+    for (std::size_t at = text.find("../"); at != std::string::npos; at = text.find("../"))
+        text.replace(at, 3, STOKES_SOURCE_DIR "/");
+    return text;
 }
 
 }  // namespace
@@ -148,18 +160,68 @@ TEST_CASE("a device is chosen by its index, by its kind and by a part of its nam
     CHECK(none.err.find("0:0") != std::string::npos);
 }
 
+TEST_CASE("the command line's transport takes the scene's place, and the outputs name it", "[command line]") {
+    for (const std::string transport : {"", "paper", "conserving", "walk"}) {
+        const TemporaryFolder folder;
+        const std::string option = transport.empty() ? "" : "--transport " + transport;
+        const Outcome outcome =
+            run_stokes("render " + sphere_scene + small_render + "--quiet " + option + " -o " +
+                       folder.file("a.exr") + " --stats " + folder.file("a.json"));
+        CAPTURE(transport, outcome.err);
+        REQUIRE(outcome.code == 0);
+        const std::string used = transport.empty() ? "conserving" : transport;
+        CHECK(nlohmann::json::parse(file_content(folder.file("a.json")))["transport"] == used);
+        CHECK(std::get<std::string>(read_exr(folder.file("a.exr")).attributes.at("stokes.transport")) ==
+              used);
+    }
+}
+
+TEST_CASE("a transport that there is not is bad input, in one line", "[command line]") {
+    const Outcome outcome = run_stokes("render " + sphere_scene + " --png x.png --transport dipole");
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err ==
+          "stokes: --transport: expected paper, conserving, walk, got \"dipole\"; stokes --help lists what "
+          "there is\n");
+}
+
+TEST_CASE("walking through a thing with a hole is bad input", "[command line]") {
+    const TemporaryFolder folder;
+    put_file(folder.file("hole.obj"), "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+    put_file(folder.file("s.json"),
+             edited_sphere_scene(
+                 "\"type\": \"sphere\", \"material\": \"glow\", \"radius_mm\": 20",
+                 "\"name\": \"hole\", \"type\": \"mesh\", \"material\": \"glow\", \"file\": \"hole.obj\""));
+    const Outcome outcome = run_stokes("render " + folder.file("s.json") + small_render +
+                                       "--transport walk --png " + folder.file("a.png"));
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err.find(
+              "stokes: " + folder.file("s.json") +
+              ": shape \"hole\": transport \"walk\" expects a closed mesh or a flat sheet, got 3 edges "
+              "without a neighbour, one at (") == 0);
+}
+
+TEST_CASE("a ball smaller than its light's reach is rendered with one warning", "[command line]") {
+    const TemporaryFolder folder;
+    const std::string rest = small_render + "--quiet --png " + folder.file("a.png");
+    CHECK(run_stokes("render " + sphere_scene + rest).err.empty());
+    const std::string render = "render " + folder.file("s.json") + rest;
+    put_file(folder.file("s.json"), edited_sphere_scene("\"material\": \"glow\", \"radius_mm\": 20",
+                                                        "\"material\": \"glow\", \"radius_mm\": 3"));
+    CHECK(run_stokes(render).err.find(
+              ": materials.glow: shape \"shape 1\" is thinner than its light reaches") != std::string::npos);
+    CHECK(run_stokes(render + " --transport walk").err.empty());
+}
+
 TEST_CASE("a scene that gives off more than it takes up is rendered with one warning", "[command line]") {
     const TemporaryFolder folder;
-    std::string text = file_content(sphere_scene);
-    const std::size_t begin = text.find("\"fluorophores\": {");
-    REQUIRE(begin != std::string::npos);
-    text.insert(text.find('{', begin) + 1,
-                "\"glow\": {\"excitation\": 1, \"emission\": 1, \"conversion_per_nm\": 0.5}, ");
-    for (std::size_t at = text.find("../"); at != std::string::npos; at = text.find("../"))
-        text.replace(at, 3, STOKES_SOURCE_DIR "/");
-    put_file(folder.file("s.json"), text);
-    const Outcome outcome = run_stokes("render " + folder.file("s.json") + small_render + "--quiet --png " +
-                                       folder.file("a.png"));
+    put_file(folder.file("s.json"),
+             edited_sphere_scene("\"fluorophores\": {",
+                                 "\"fluorophores\": {\"glow\": {\"excitation\": 1, \"emission\": 1, "
+                                 "\"conversion_per_nm\": 0.5}, "));
+    const std::string render =
+        "render " + folder.file("s.json") + small_render + "--quiet --png " + folder.file("a.png");
+    CHECK(run_stokes(render).err.empty());
+    const Outcome outcome = run_stokes(render + " --transport paper");
     CHECK(outcome.err ==
           "stokes: warning: " + folder.file("s.json") +
               ": fluorophores.glow: emits up to 266 times what it takes up (conversion_per_nm times the "

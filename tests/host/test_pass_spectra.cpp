@@ -18,6 +18,7 @@ Spectrum ramp(double at_300, double at_780) {
 // A surface light, a beam and a dark lamp; two materials and a fluorophore.
 Scene spectral_scene() {
     Scene scene;
+    scene.render.transport = Transport::paper;
     scene.file = "spectra.json";
     scene.render.seed = 5;
     Light surface, beam, dark;
@@ -102,12 +103,56 @@ TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
     }
     for (int f = 0; f < 2; ++f) {
         const Fluorophore& dye = scene.fluorophores[static_cast<std::size_t>(f)];
-        const auto expected = reradiation_rows(dye, set, 32.0);
+        const auto expected = reradiation_rows(dye, Transport::paper, set, 32.0);
         for (std::uint32_t ex = 0; ex < STOKES_WAVELENGTHS; ++ex) {
             CHECK(value(layout.excitation_row(f), ex) == Approx(dye.excitation.at(set[ex])).epsilon(1e-6));
             CHECK(std::memcmp(&pass.rows[layout.reradiation_row(f) + ex], &expected[ex], sizeof(Flux16)) ==
                   0);
         }
+    }
+}
+
+// Photons come out as the quantum yield says, for each excitation wavelength: the mean over many sets of the row's sum
+// of photons, by the pair weight, is that of the full sum over all wavelengths above it.
+TEST_CASE("conserving re-radiation emits the quantum yield in photons", "[pass_spectra]") {
+    Fluorophore dye = spectral_scene().fluorophores.front();
+    dye.quantum_yield = 0.7;
+    const double sum = dye.emission.sum_1nm(300, 830);
+    for (const int ex : {330, 400, 470}) {
+        double expected = 0.0;
+        for (int em = ex + 1; em <= 780; ++em) expected += 0.7 * dye.excitation.at(ex) * dye.emission.at(em) / sum;
+        Sample photons;
+        for (std::uint32_t pass = 0; pass < 200000 && photons.count() < 4000; ++pass) {
+            const WavelengthSet set = draw_wavelengths(8, pass, 300, 780);
+            const auto at = std::find(set.begin(), set.end(), ex);
+            if (at == set.end()) continue;
+            const auto rows = reradiation_rows(dye, Transport::conserving, set, pair_weight_nm(300, 780));
+            double total = 0.0;
+            for (std::size_t em = 0; em < set.size(); ++em)
+                total += static_cast<double>(rows[static_cast<std::size_t>(at - set.begin())].v[em]) * set[em] / ex;
+            photons.add(total);
+        }
+        CAPTURE(ex, expected, photons.mean());
+        CHECK(photons.standard_error() < 0.05 * 0.7);
+        CHECK(std::abs(photons.mean() - expected) <= 4.0 * photons.standard_error() + 1e-9);
+    }
+}
+
+TEST_CASE("the last rows are the extinction coefficient and the albedo of the media", "[pass_spectra]") {
+    Scene scene = spectral_scene();
+    Medium medium;
+    medium.sigma_s = {{300.0, 800.0}, {1.0, 2.0}, Outside::hold};
+    medium.sigma_a = Spectrum::constant(0.5);
+    scene.media = {Medium{}, medium};
+    scene.media[0].sigma_s = scene.media[0].sigma_a = Spectrum::constant(1.0);
+    const SpectraLayout layout(scene);
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 1, 100);
+    REQUIRE(layout.sigma_row(1) + 2 == layout.row_count());
+    for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
+        const double s = medium.sigma_s.at(static_cast<double>(pass.constants.lambda_nm[k]));
+        CHECK(static_cast<double>(pass.rows[layout.sigma_row(1)].v[k]) == Approx(s + 0.5).epsilon(1e-6));
+        CHECK(static_cast<double>(pass.rows[layout.sigma_row(1) + 1].v[k]) == Approx(s / (s + 0.5)).epsilon(1e-6));
+        CHECK(pass.rows[layout.sigma_row(0)].v[k] == 2.0f);
     }
 }
 
@@ -120,7 +165,11 @@ TEST_CASE("the constants of a pass are its own", "[pass_spectra]") {
     CHECK(pass.constants.seed == 5);
     CHECK(pass.constants.pass == 3);
     CHECK(pass.constants.photons == 12345);
-    CHECK(pass.constants.wavelengths == 481.0f);
+    CHECK(pass.constants.chain[0] == 1.0f);
+    CHECK(pass.constants.chain[1] == Approx(479.0 / 14.0 / 32.0));
+    CHECK(pass.constants.chain[14] == Approx(466.0 / 1.0 / 32.0));
+    CHECK(pass.constants.chain[15] == 0.0f);  // no sixteenth wavelength after the first
+    CHECK(pass.constants.transport == STOKES_TRANSPORT_PAPER);
 }
 
 // xyz_of() sums over every nanometre of 300..830; light beyond 780 nm is not rendered, so the spectrum ends

@@ -111,6 +111,18 @@ TEST_CASE("the first radius catches its photons where the camera looks", "[radiu
             const double expected = spacing_mm * std::sqrt(photons_per_disk / M_PI);
             CHECK(first_radius_mm(record, points, photon_grid(spacing_mm)) == Approx(expected).epsilon(0.03));
         }
+        // A third of the pixels see something in a reflection, anywhere.
+        std::vector<GatherPoint> partly = points;
+        for (std::size_t i = 0; i < partly.size(); i += 3) {
+            partly[i].reflected = 1;
+            partly[i].maps = i % 2 == 0 ? partly[i].maps : 0;
+            partly[i].x += 500.0f;
+            partly[i].z -= 300.0f;
+        }
+        CHECK(first_radius_mm(record, partly, photon_grid(0.1f)) ==
+              Approx(0.1 * std::sqrt(photons_per_disk / M_PI)).epsilon(0.03));
+        for (GatherPoint& point : partly) point.reflected = 1;
+        CHECK(first_radius_mm(record, partly, photon_grid(0.1f)) == 0.0);
         std::vector<PhotonHead> empty = photon_grid(0.1f);
         for (PhotonHead& photon : empty) photon.normal = STOKES_EMPTY_SLOT;
         CHECK(first_radius_mm(record, points, empty) == 0.0);

@@ -2,6 +2,7 @@
 
 #include "host/core/media_limits.hpp"
 #include "host/scene/scene_reader.hpp"
+#include "host/subsurface/escape.hpp"
 #include "host/subsurface/paper_transport.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
@@ -66,7 +67,9 @@ TEST_CASE("Bad scenes: the file as a whole") {
         {"stokes-scene", "stoke-scene", ":2: format: expected \"stokes-scene\", got \"stoke-scene\""},
         {"\"version\": 1", "\"version\": 2", ":2: version: expected an integer in [1, 1], got 2"},
         {"\"paper\"", "\"papers\"",
-         ":2: transport: expected \"paper\", got \"papers\"; did you mean \"paper\"?"},
+         ":2: transport: expected \"paper\", \"conserving\" or \"walk\", got \"papers\"; did you mean "
+         "\"paper\"?"},
+        {"\"paper\"", "1", ":2: transport: expected \"paper\", \"conserving\" or \"walk\", got 1"},
         {"\"film\"", "\"flim\"", ":4: unknown key \"flim\"; did you mean \"film\"?"},
         {"\"film\"", "\"render\"", ":4: key \"render\" given twice, first in line 3"},
         {"\"film\": {", "\"film\": [{", ":5: JSON syntax error while parsing array - unexpected ':'"},
@@ -172,6 +175,8 @@ TEST_CASE("Bad scenes: media, fluorophores and materials") {
          ":8: fluorophores.dye.excitation: expected values in [0, 1], got 1.5 at 300"},
         {"[[500, 1]]}", "[[500, 1]]}, \"conversion_per_nm\": 2",
          ":8: fluorophores.dye.conversion_per_nm: expected"},
+        {"[[500, 1]]}", "[[500, 1]]}, \"quantum_yield\": 1.01",
+         ":8: fluorophores.dye.quantum_yield: expected a number in [0, 1], got 1.01"},
         {"\"reflectance\": 0.5", "\"reflectance\": 1.5",
          ":10: materials.floor.reflectance: expected a number in [0, 1], got 1.5"},
         {"\"reflectance\": 0.5", "\"reflectance\": \"lamp\"",
@@ -195,9 +200,32 @@ TEST_CASE("Bad scenes: media, fluorophores and materials") {
         {", \"fluorescent_fraction\": 0.5", "", ":11: materials.glow: missing key \"fluorescent_fraction\""},
         {"\"fluorescent_fraction\": 0.5", "\"fluorescent_fraction\": 1.01",
          ":11: materials.glow.fluorescent_fraction: expected a number in [0, 1], got 1.01"},
+        {"\"type\": \"diffuse\"", "\"type\": \"diffuse\", \"fresnel\": true",
+         ":10: materials.floor: unknown key \"fresnel\""},
+        {"\"medium\": \"stone\"", "\"medium\": \"stone\", \"fresnel\": 1",
+         ":11: materials.glow.fresnel: expected true or false, got 1"},
+        {"\"medium\": \"stone\"", "\"medium\": \"stone\", \"fresnel\": true, \"subsurface\": false",
+         ":11: materials.glow.fresnel: Fresnel reflection needs a medium and subsurface light"},
+        {"\"medium\": \"stone\"", "\"fresnel\": true, \"subsurface\": false",
+         ":11: materials.glow.fresnel: Fresnel reflection needs a medium and subsurface light"},
+        {"\"medium\": \"stone\"", "\"fresnel\": true",
+         ":11: materials.glow: missing key \"medium\", which subsurface light needs"},
         {"\"dye\", \"fl", "\"ink\", \"fl", ":11: materials.glow.fluorophore: no \"ink\" in fluorophores"},
         {"\"glow\": {", "\"../glow\": {", ":11: materials: expected a name of 1 to 64 letters"},
     });
+}
+
+TEST_CASE("Fresnel reflection needs a refractive index that tables of it end at") {
+    const auto with_eta = [](const std::string& eta, const std::string& fresnel) {
+        std::string text = base;
+        text.replace(text.find("\"eta\": 1.5"), 10, "\"eta\": " + eta);
+        return text.replace(text.find("\"medium\": \"stone\""), 17,
+                            "\"medium\": \"stone\", \"fresnel\": " + fresnel);
+    };
+    CHECK(input_error([&] { parse_scene(with_eta("4.01", "true"), "s.json"); }) ==
+          "s.json:11: materials.glow.fresnel: Fresnel reflection needs a medium with eta up to 4, got 4.01");
+    CHECK_NOTHROW(parse_scene(with_eta("4", "true"), "s.json"));
+    CHECK_NOTHROW(parse_scene(with_eta("4.01", "false"), "s.json"));
 }
 
 TEST_CASE("Bad scenes: lights") {
@@ -303,6 +331,8 @@ TEST_CASE("Shapes that single precision cannot hold where they are") {
 TEST_CASE("The media that the reader lets through are those that tables can be made for") {
     CHECK_NOTHROW(dipole_boundary(largest_dipole_eta));
     CHECK_THROWS_AS(dipole_boundary(largest_dipole_eta + 0.1), InputError);
+    CHECK_NOTHROW(HalfSpaceEscape(largest_green_eta, {1.0}));
+    CHECK_THROWS_AS(HalfSpaceEscape(largest_green_eta + 0.1, {1.0}), InputError);
 }
 
 TEST_CASE("A file too large for the memory is an input error") {

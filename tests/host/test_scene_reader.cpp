@@ -78,6 +78,43 @@ TEST_CASE("A scene's settings, media and materials arrive as written") {
     CHECK(scene.materials[2].kind == MaterialKind::black);
 }
 
+TEST_CASE("A scene names its transport, or gets the one that conserves energy") {
+    CHECK(parse_scene(base, "s.json").render.transport == Transport::paper);
+    CHECK(scene_with("\"paper\"", "\"conserving\"").render.transport == Transport::conserving);
+    CHECK(scene_with("\"paper\"", "\"walk\"").render.transport == Transport::walk);
+    CHECK(scene_with(", \"transport\": \"paper\"", "").render.transport == Transport::conserving);
+}
+
+TEST_CASE("A surface reflects where the scene says so") {
+    CHECK_FALSE(parse_scene(base, "s.json").materials[1].fresnel);
+    const std::string medium = "\"medium\": \"stone\"";
+    CHECK(scene_with(medium, medium + ", \"fresnel\": true").materials[1].fresnel);
+    CHECK_FALSE(scene_with(medium, medium + ", \"fresnel\": false").materials[1].fresnel);
+    CHECK_FALSE(
+        scene_with(medium, medium + ", \"fresnel\": false, \"subsurface\": false").materials[1].fresnel);
+}
+
+TEST_CASE("A quantum yield is given, or follows from the conversion and the emission, and is 1 at most") {
+    const auto yield = [](const std::string& emission, const std::string& more) {
+        const Scene scene = scene_with(R"("emission": {"pairs": [[500, 1]]})",
+                                       R"("emission": {"pairs": )" + emission + "}" + more);
+        return scene.fluorophores[0].quantum_yield;
+    };
+    const std::string sums_to_10 = "[[500, 0], [510, 1], [520, 0]]";
+    CHECK(yield(sums_to_10, "") == Approx(0.2));
+    CHECK(yield(sums_to_10, ", \"conversion_per_nm\": 0.03") == Approx(0.3));
+    CHECK(yield(sums_to_10, ", \"conversion_per_nm\": 0.5") == 1.0);
+    CHECK(yield(sums_to_10, ", \"conversion_per_nm\": 0.5, \"quantum_yield\": 0.25") == 0.25);
+    CHECK(yield(sums_to_10, ", \"quantum_yield\": 0") == 0.0);
+    // Light from 300 to 830 nm counts.
+    CHECK(yield("[[820, 0], [830, 1], [840, 0]]", "") == Approx(0.02 * 5.5));
+    // PHYSICS section 4: the paper's conversion of 0.02 amounts to about 0.6.
+    for (const Fluorophore& dots : read_scene(STOKES_SOURCE_DIR "/scenes/prisms.json").fluorophores) {
+        INFO(dots.name);
+        CHECK(dots.quantum_yield == Approx(0.65).margin(0.15));
+    }
+}
+
 TEST_CASE("What a scene leaves out has its default") {
     const Scene scene = scene_with(
         R"(  "render": {"passes": 4, "photons_per_pass": 1000, "alpha": 0.5, "radius_mm": 2, "seed": 9},
@@ -266,6 +303,7 @@ TEST_CASE("The exhibit: three dyes in two rows, each object standing on its pris
     CHECK(scene.media[0].sigma_s.at(300) == Approx(1.5));
     CHECK(scene.media[0].sigma_a.at(300) == Approx(0.0071));
     CHECK((scene.media[0].eta == 1.5 && scene.media[0].dipole_eta == 1.0));
+    CHECK(scene.render.transport == Transport::paper);
     // 20 W/m^2 over the beam's disk
     CHECK(scene.lights[0].flux.sum_1nm(300, 780) == Approx(20.0 * 3.14159265 * 0.27 * 0.27));
 }
@@ -273,5 +311,6 @@ TEST_CASE("The exhibit: three dyes in two rows, each object standing on its pris
 TEST_CASE("The small scene reads") {
     const Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/sphere.json");
     CHECK(scene.shapes.size() == 3);
+    CHECK(scene.render.transport == Transport::conserving);
     CHECK(mesh_bounds(scene.shapes[1].mesh).low_mm.y == Approx(0).margin(1e-5));
 }

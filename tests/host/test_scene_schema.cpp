@@ -86,5 +86,10 @@ TEST_CASE("The schema has the reader's limits") {
          {std::pair("material_diffuse", "reflectance"), std::pair("fluorophore", "excitation"),
           std::pair("fluorophore", "emission")})
         CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
+    CHECK(property("scene", "transport").at("enum") == transport_words);
+    CHECK(property("scene", "transport").at("default") ==
+          transport_words[static_cast<std::size_t>(RenderSettings().transport)]);
+    CHECK(property("material_translucent", "fresnel").at("default") == Material().fresnel);
+    CHECK(property("fluorophore", "quantum_yield").at("maximum") == 1);
     CHECK(schema.at("$defs").at("spectrum_up_to_1").at("allOf").at(1).at("maximum") == 1);
 }

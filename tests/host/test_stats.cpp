@@ -15,6 +15,7 @@ RenderStats example() {
     stats.scene = "scenes/prisms.json";
     stats.device = "pthread-cpu";
     stats.driver = "3.1";
+    stats.transport = "walk";
     stats.passes = 12;
     stats.seed = 4000000000u;
     stats.width = 640;
@@ -25,13 +26,18 @@ RenderStats example() {
     stats.deposits = 7;
     stats.stages = {{"emit_photons", 0.125}, {"trace_closest", 1.0 / 3.0}};
     stats.dropped = {{"missed_exit", 3}, {"map_full", 0}};
-    stats.ledger.emitted = 2.0;
-    stats.ledger.absorbed = 1.5;
-    stats.ledger.stokes_loss = 0.25;
-    stats.ledger.escaped = 0.125;
-    stats.ledger.dropped = 0.0625;
-    stats.ledger.roulette = 0.0625;
-    stats.ledger.stored = 9.0;
+    stats.ledger.power.emitted = 2.0;
+    stats.ledger.power.absorbed = 1.5;
+    stats.ledger.power.stokes_loss = 0.25;
+    stats.ledger.power.escaped = 0.125;
+    stats.ledger.power.dropped = 0.0625;
+    stats.ledger.power.roulette = 0.0625;
+    stats.ledger.power.stored = 9.0;
+    stats.ledger.photons.emitted = 3e18;
+    stats.ledger.photons.absorbed = 2e18;
+    stats.ledger.photons.escaped = 1e18;
+    stats.ledger.paths = 10;
+    stats.ledger.escaped_paths = 4;
     stats.radius_first_mm = 0.1;
     stats.radius_last_mm = 1e-7;
     return stats;
@@ -48,6 +54,7 @@ nlohmann::json written(const RenderStats& stats) {
 TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     const nlohmann::json json = written(example());
     CHECK(json.at("passes") == 12);
+    CHECK(json.at("transport") == "walk");
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
     CHECK(json.at("photons_emitted") == 12000000000ull);
@@ -68,6 +75,10 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     CHECK(ledger.at("stored") == 9.0);
     CHECK(ledger.at("escaped") == 0.125);
     CHECK(ledger.at("imbalance") == 0.0);
+    CHECK(json.at("ledger_photons").at("emitted") == 3e18);
+    CHECK(json.at("ledger_photons").at("imbalance") == 0.0);
+    CHECK(json.at("paths").at("emitted") == 10);
+    CHECK(json.at("paths").at("escaped") == 4);
 }
 
 TEST_CASE("statistics of nothing are still JSON", "[stats]") {
@@ -79,7 +90,7 @@ TEST_CASE("statistics of nothing are still JSON", "[stats]") {
 
 TEST_CASE("a figure that is not a number is null", "[stats]") {
     RenderStats stats = example();
-    stats.ledger.emitted = std::numeric_limits<double>::quiet_NaN();
+    stats.ledger.power.emitted = std::numeric_limits<double>::quiet_NaN();
     stats.stages["broken"] = std::numeric_limits<double>::infinity();
     const nlohmann::json json = written(stats);
     CHECK(json.at("ledger").at("emitted").is_null());

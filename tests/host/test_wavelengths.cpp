@@ -137,7 +137,7 @@ TEST_CASE("re-radiation rows hold eq. 1-2 with the pair weight, and nothing at o
     Fluorophore fluorophore = overlapping();
     fluorophore.conversion = 0.013;
     const WavelengthSet set = draw_wavelengths(2, 9, 420, 560);  // within the overlap
-    const auto rows = reradiation_rows(fluorophore, set, 32.0);
+    const auto rows = reradiation_rows(fluorophore, Transport::paper, set, 32.0);
     for (std::size_t ex = 0; ex < set.size(); ++ex)
         for (std::size_t em = 0; em < set.size(); ++em) {
             const double expected =

@@ -125,7 +125,7 @@ TEST_CASE("every photon starts as its light says", "[emit_photons][tiny]") {
         CAPTURE(i, light);
         ++seen[light];
         CHECK(emitted.list[i] == i);
-        CHECK(static_cast<double>(ledger.emitted) == Approx(sum_of(rows[light])).epsilon(1e-6));
+        CHECK(static_cast<double>(ledger.emitted.energy) == Approx(sum_of(rows[light])).epsilon(1e-6));
         CHECK(static_cast<double>(ledger.reference_flux) == Approx(sum_of(rows[light]) / 16.0).epsilon(1e-6));
         CHECK(glm::length(direction_of(ray)) == Approx(1.0).epsilon(1e-6));
         CHECK(ray.t_min == 0.0f);
@@ -163,7 +163,7 @@ TEST_CASE("lights are chosen by their probability, and their photons add up to t
     for (std::size_t i = 0; i < rows.size(); ++i) {
         double sum = 0.0;
         for (std::size_t k = 0; k < photons; ++k)
-            if (emitted.light[k] == i) sum += static_cast<double>(emitted.ledgers[k].emitted);
+            if (emitted.light[k] == i) sum += static_cast<double>(emitted.ledgers[k].emitted.energy);
         const double p = probability[i], flux = p * photons * sum_of(rows[i]);
         const double error = std::sqrt(p * (1.0 - p) * photons) * sum_of(rows[i]);
         CHECK(std::abs(sum - flux) <= 4.0 * error + 1e-6 * flux);

@@ -13,7 +13,9 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 // Materials of the tests, by index; reflectances are in the row of the same number.
-enum : std::uint32_t { black, grey, white, plain_translucent, surface_fluorescent };
+enum : std::uint32_t { black, grey, white, plain_translucent, surface_fluorescent, smooth_translucent };
+
+constexpr float exit_scale = 1.3f, smooth_eta = 2.0f;  // of smooth_translucent
 
 struct Photon {
     glm::dvec3 position, normal;
@@ -69,6 +71,7 @@ class Bench {
     }
     // By component, then point.
     std::vector<FilmValue> film() const { return film_.download(); }
+    std::vector<GatherPoint> points() const { return gather_.points().download(); }
     double x(std::uint32_t component, std::uint32_t point) const {
         return film()[component * count_ + point].x;
     }
@@ -97,12 +100,15 @@ class Bench {
             rays.push_back({p.x - d.x, p.y - d.y, p.z - d.z, 0.0f, d.x, d.y, d.z, INFINITY});
             hits.push_back({1.0f, 0.0f, 0.0f, s.missed ? STOKES_NONE : i});
         }
-        std::vector<MaterialRecord> materials(5);
+        std::vector<MaterialRecord> materials(6);
         for (MaterialRecord& m : materials) m.medium = STOKES_NONE;
         materials[black].kind = STOKES_BLACK;
         materials[grey].kind = materials[white].kind = STOKES_DIFFUSE;
         materials[plain_translucent].kind = materials[surface_fluorescent].kind = STOKES_TRANSLUCENT;
         materials[plain_translucent].medium = 0;
+        materials[smooth_translucent] = materials[plain_translucent];
+        materials[smooth_translucent].eta = smooth_eta;
+        materials[smooth_translucent].exit_scale = exit_scale;
         std::vector<Flux16> spectra(materials.size()), lights(1);
         for (int k = 0; k < 16; ++k) {
             for (std::uint32_t m = 0; m < spectra.size(); ++m) spectra[m].v[k] = reflectance(m, k);
@@ -276,7 +282,7 @@ TEST_CASE("uniform photons on a plane give radiance flux / (pi area)", "[gather]
 TEST_CASE("materials see their own maps", "[gather][tiny]") {
     const glm::dvec3 up(0.0, 0.0, 1.0);
     std::vector<Seen> seen;
-    for (std::uint32_t material : {black, grey, white, plain_translucent, surface_fluorescent})
+    for (std::uint32_t material : {black, grey, white, plain_translucent, surface_fluorescent, smooth_translucent})
         seen.push_back({{0.0, 0.0, 0.0}, up, material});
     Bench bench(seen, {{{0.1, 0.0, 0.0}, up, 2.0f}}, 0.5f);
     bench.run();
@@ -285,10 +291,11 @@ TEST_CASE("materials see their own maps", "[gather][tiny]") {
         white_x += 2.0 * spectrum(k) / (pi * pi * 0.25);
         grey_x += 2.0 * spectrum(k) * reflectance(grey, k) / (pi * pi * 0.25);
     }
-    const double expected[4][5] = {{0, 0, 0, white_x, white_x},
-                                   {0, 0, 0, white_x, 0},
-                                   {0, 0, 0, white_x, 0},
-                                   {0, grey_x, white_x, 0, 0}};
+    const double smooth_x = white_x * static_cast<double>(exit_scale);
+    const double expected[4][6] = {{0, 0, 0, white_x, white_x, smooth_x},
+                                   {0, 0, 0, white_x, 0, smooth_x},
+                                   {0, 0, 0, white_x, 0, smooth_x},
+                                   {0, grey_x, white_x, 0, 0, 0}};
     for (std::uint32_t component = 0; component < 4; ++component)
         for (std::uint32_t i = 0; i < seen.size(); ++i) {
             INFO("component " << component << ", point " << i);
@@ -374,6 +381,40 @@ TEST_CASE("emitters shine from their front, beside what they reflect; passes add
         CHECK(bench.x(STOKES_MAP_SURFACE, 2) == 0.0);
         CHECK(bench.x(STOKES_MAP_SURFACE, 3) == Approx(pass * (direct + reflected)).epsilon(1e-5));
     }
+}
+
+// Seen head on with probability 1 - R, R = ((eta - 1) / (eta + 1))^2.
+TEST_CASE("smooth surfaces have the weight of their exit, and emit as much as others in the mean", "[gather][tiny]") {
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    std::vector<Seen> seen = {{{0.0, 0.0, 0.0}, up, smooth_translucent, 0},
+                              {{0.0, 0.0, 0.0}, up, smooth_translucent},
+                              {{0.0, 0.0, 0.0}, up, plain_translucent, 0}};
+    seen.push_back(seen[0]);
+    seen[3].from_behind = true;
+    Bench bench(seen, {}, 1.0f);
+    bench.collect();
+    double emission = 0.0;
+    for (int k = 0; k < 16; ++k) emission += emitted(k);
+    const std::vector<GatherPoint> points = bench.points();
+    CHECK(points[0].weight == exit_scale);
+    CHECK(points[1].weight == exit_scale);
+    CHECK(points[2].weight == 1.0f);
+    CHECK(points[3].maps == 0u);
+    CHECK(bench.x(STOKES_MAP_SURFACE, 0) == Approx(emission / (1.0 - 1.0 / 9.0)).epsilon(1e-5));
+    CHECK(bench.x(STOKES_MAP_SURFACE, 1) == 0.0);
+    CHECK(bench.x(STOKES_MAP_SURFACE, 2) == Approx(emission).epsilon(1e-5));
+    CHECK(bench.x(STOKES_MAP_SURFACE, 3) == 0.0);
+}
+
+// The bench's camera stands at the origin.
+TEST_CASE("a point is seen directly where its ray starts at the camera", "[gather][tiny]") {
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    Bench bench({{{0.0, 0.0, -1.0}, up, white}, {{0.0, 1e-3, -1.0}, up, white}, {{0.0, 0.0, 0.0}, up, white}}, {}, 1.0f);
+    bench.collect();
+    const std::vector<GatherPoint> points = bench.points();
+    CHECK(points[0].reflected == 0u);
+    CHECK(points[1].reflected == 1u);
+    CHECK(points[2].reflected == 1u);
 }
 
 TEST_CASE("a map without photons adds nothing", "[gather][tiny]") {

@@ -83,6 +83,17 @@ TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, i
     }
 }
 
+TEST_CASE("the weight that a point has is kept as a factor", "[measure_disks][tiny]") {
+    GatherPoint point = point_at(9.0, 0.0, 9.0);
+    const Sample plain = weights(make_rectangle(20.0, 20.0), point, 50, 2.0f);
+    point.weight = 1.125f;
+    const Sample scaled = weights(make_rectangle(20.0, 20.0), point, 50, 2.0f);
+    CHECK(plain.mean() > 1.2);
+    CHECK(scaled.mean() == Approx(1.125 * plain.mean()).epsilon(1e-12));
+    point.x = point.z = 0.0f;
+    CHECK(weights(make_rectangle(20.0, 20.0), point, 50, 2.0f).mean() == 1.125);
+}
+
 TEST_CASE("points without photons are left alone, and trials end where there is no surface", "[measure_disks][tiny]") {
     GatherPoint nothing = point_at(0.0, 0.0, 0.0);
     nothing.maps = 0;

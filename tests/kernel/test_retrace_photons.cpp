@@ -68,7 +68,7 @@ ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, double kept, boo
                   std::uint32_t material = 0) {
     const glm::vec3 n(normal), p = 2.0f * n;
     return {p.x,   p.y,  p.z,      found ? 1.5f : -1.5f,     n.x, n.y, n.z,
-            20.0f, path, material, static_cast<float>(kept), 0};
+            20.0f, path, material, 0, 1, {static_cast<float>(kept), 0}, {0, 0}};
 }
 
 // The same elastic event many times: shares of the incident flux that single and multiple scattering keep.
@@ -116,7 +116,7 @@ void check_elastic(double single, double multiple, bool single_found, bool multi
         const PathLedger& ledger = r.ledgers[i];
         const bool alive = ledger.fate == STOKES_FATE_ALIVE;
         const bool first = alive && leaves_at(r.rays[i], single_normal);
-        roulette.add(double(ledger.roulette));
+        roulette.add(double(ledger.roulette.energy));
         at_single.add(first ? double(r.flux[i].v[3]) : 0.0);
         at_multiple.add(alive && !first ? double(r.flux[i].v[3]) : 0.0);
         if (!alive) {
@@ -165,7 +165,7 @@ Deposited fluorescent_events(std::uint32_t paths, double lowest_share, double hi
         for (std::size_t k = 0; k < 16; ++k)
             d.map_flux[i].v[k] = static_cast<float>(converted[k] * double(share.v[k]));
         d.exits.push_back(exit_at(single_normal, i, sum_of(d.map_flux[i]), i % 11 != 10, i % 3));
-        d.exits[i].converted = static_cast<float>(std::accumulate(converted.begin(), converted.end(), 0.0));
+        d.exits[i].event_light.energy = static_cast<float>(std::accumulate(converted.begin(), converted.end(), 0.0));
     }
     return d;
 }
@@ -200,14 +200,14 @@ TEST_CASE("elastic ledgers close, whatever was missed or cut", "[retrace][tiny]"
                 const Retraced r = retrace_elastic(d, 32, last);
                 CHECK(worst_imbalance(r.ledgers, r.flux) < 1e-5);
                 for (const PathLedger& ledger : r.ledgers) {
-                    const double in = double(ledger.emitted);
+                    const double in = double(ledger.emitted.energy);
                     const double lost = (missed & 1 ? single : 0.0) * in + (missed & 2 ? multiple : 0.0) * in;
-                    CHECK(double(ledger.created) ==
+                    CHECK(double(ledger.created.energy) ==
                           Approx(std::max(single + multiple - 1.0, 0.0) * in).epsilon(1e-5));
-                    CHECK(double(ledger.absorbed) ==
+                    CHECK(double(ledger.absorbed.energy) ==
                           Approx(std::max(1.0 - single - multiple, 0.0) * in).epsilon(1e-5));
                     if (ledger.fate != STOKES_FATE_EVENT_LIMIT)
-                        CHECK(double(ledger.dropped) == Approx(lost).margin(1e-6));
+                        CHECK(double(ledger.dropped.energy) == Approx(lost).margin(1e-6));
                     if (last == 1) CHECK(ledger.fate != STOKES_FATE_ALIVE);
                 }
             }
@@ -232,15 +232,15 @@ TEST_CASE("an F photon goes on with the flux that left", "[retrace][tiny]") {
         const PathLedger& ledger = r.ledgers[i];
         if (exit_point.r_mm < 0.0f) {
             CHECK(ledger.fate == STOKES_FATE_MISSED_EXIT);
-            CHECK(ledger.dropped == exit_point.kept);
+            CHECK(ledger.dropped.energy == exit_point.kept.energy);
             CHECK(r.rays[i].t_max < r.rays[i].t_min);
             continue;
         }
-        if (double(exit_point.kept) < 1.001 * roulette_share * double(ledger.emitted)) continue;
+        if (double(exit_point.kept.energy) < 1.001 * roulette_share * double(ledger.emitted.energy)) continue;
         ++bright;
         check_going_on(r.rays[i], ledger, single_normal);
         CHECK(same_bits(r.flux[i], d.map_flux[i]));
-        CHECK(std::abs(double(ledger.roulette)) < 1e-6 * double(ledger.emitted));
+        CHECK(std::abs(double(ledger.roulette.energy)) < 1e-6 * double(ledger.emitted.energy));
     }
     CHECK(bright > 50);
 }
@@ -259,13 +259,13 @@ TEST_CASE("a fluorescent event's losses stand in the ledger where they belong", 
             double taken = 0.0;
             for (std::size_t k = 0; k < 16; ++k)
                 taken += double(d.flux[i].v[k]) * double(spectra[materials[i % 3].excitation_row].v[k]);
-            const double in = sum_of(d.flux[i]), converted = double(d.exits[i].converted),
-                         kept = double(d.exits[i].kept);
+            const double in = sum_of(d.flux[i]), converted = double(d.exits[i].event_light.energy),
+                         kept = double(d.exits[i].kept.energy);
             const PathLedger& ledger = r.ledgers[i];
-            CHECK(double(ledger.stokes_loss) == Approx(taken - converted).margin(1e-5 * in));
-            CHECK(double(ledger.absorbed) ==
+            CHECK(double(ledger.stokes_loss.energy) == Approx(taken - converted).margin(1e-5 * in));
+            CHECK(double(ledger.absorbed.energy) ==
                   Approx(in - taken + std::max(converted - kept, 0.0)).margin(1e-5 * in));
-            CHECK(double(ledger.created) == Approx(std::max(kept - converted, 0.0)).margin(1e-5 * in));
+            CHECK(double(ledger.created.energy) == Approx(std::max(kept - converted, 0.0)).margin(1e-5 * in));
         }
     }
 }
@@ -279,7 +279,7 @@ TEST_CASE("an F photon without a slot, or in the last round, is dropped", "[retr
     for (std::uint32_t i = 70; i < 110; ++i) {
         const bool found = d.exits[i].r_mm >= 0.0f;
         CHECK(full.ledgers[i].fate == (found ? STOKES_FATE_MAP_FULL : STOKES_FATE_MISSED_EXIT));
-        CHECK(full.ledgers[i].dropped == d.exits[i].kept);
+        CHECK(full.ledgers[i].dropped.energy == d.exits[i].kept.energy);
     }
     const Retraced cut = retrace_fluorescence(d, round_for(110, 1), 36);
     CHECK(worst_imbalance(cut.ledgers, cut.flux) < 1e-5);
@@ -294,7 +294,7 @@ TEST_CASE("roulette keeps the expectation of faint F photons", "[retrace]") {
     Deposited d = fluorescent_events(1, 0.5, 0.6);
     const double factor = 0.02 * sum_of(d.flux[0]) / sum_of(d.map_flux[0]);
     for (float& f : d.map_flux[0].v) f *= static_cast<float>(factor);
-    d.exits[0].kept = static_cast<float>(sum_of(d.map_flux[0]));
+    d.exits[0].kept.energy = static_cast<float>(sum_of(d.map_flux[0]));
     d = {std::vector<ExitPoint>(paths, d.exits[0]), std::vector<Flux16>(paths, d.flux[0]),
          std::vector<Flux16>(paths, d.map_flux[0]), std::vector<PathLedger>(paths, d.ledgers[0])};
     for (std::uint32_t i = 0; i < paths; ++i) d.exits[i].path = i;
@@ -305,7 +305,7 @@ TEST_CASE("roulette keeps the expectation of faint F photons", "[retrace]") {
     for (std::uint32_t i = 0; i < paths; ++i) {
         const bool goes_on = r.ledgers[i].fate == STOKES_FATE_ALIVE;
         alive.add(goes_on ? 1.0 : 0.0);
-        roulette.add(double(r.ledgers[i].roulette));
+        roulette.add(double(r.ledgers[i].roulette.energy));
         for (std::size_t k = 0; k < 16; ++k) carried[k].add(goes_on ? double(r.flux[i].v[k]) : 0.0);
     }
     CHECK(std::abs(alive.z(0.02 / roulette_share)) < 4.0);

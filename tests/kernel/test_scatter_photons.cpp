@@ -119,7 +119,7 @@ void check_all(std::uint32_t paths) {
         CHECK(std::abs(int(head.normal & 0xffff) - int(packed & 0xffff)) <= 1);
         CHECK(std::abs(int(head.normal >> 16) - int(packed >> 16)) <= 1);
         CHECK(same_bits(s.map_flux[first + i], a.flux[path]));
-        CHECK(double(s.ledgers[path].stored) == Approx(sum_of(a.flux[path])).epsilon(1e-6));
+        CHECK(double(s.ledgers[path].stored.energy) == Approx(sum_of(a.flux[path])).epsilon(1e-6));
         if (p.material == 0) CHECK(s.ledgers[path].fate == STOKES_FATE_ABSORBED);
         if (p.material == 1) {  // white: goes on with the same flux
             CHECK(s.ledgers[path].fate == STOKES_FATE_ALIVE);
@@ -157,7 +157,7 @@ TEST_CASE("nothing is stored beyond the last slot, and the paths go on all the s
         const std::uint32_t path = a.list[i];
         CHECK(std::memcmp(&some.rays[path], &all.rays[path], sizeof(Ray)) == 0);
         CHECK(same_bits(some.flux[path], all.flux[path]));
-        CHECK(some.ledgers[path].stored == (i < 47 ? all.ledgers[path].stored : 0.0f));
+        CHECK(some.ledgers[path].stored.energy == (i < 47 ? all.ledgers[path].stored.energy : 0.0f));
         CHECK(std::abs(imbalance_of(some.ledgers[path], some.flux[path])) < 1e-5);
     }
 }
@@ -172,7 +172,7 @@ TEST_CASE("in the last round paths are cut, and counted", "[scatter_photons][tin
         CHECK(std::abs(imbalance_of(cut.ledgers[path], cut.flux[path])) < 1e-5);
         if (going.ledgers[path].fate == STOKES_FATE_ALIVE) {
             CHECK(cut.ledgers[path].fate == STOKES_FATE_EVENT_LIMIT);
-            CHECK(double(cut.ledgers[path].dropped) == Approx(sum_of(going.flux[path])).epsilon(1e-6));
+            CHECK(double(cut.ledgers[path].dropped.energy) == Approx(sum_of(going.flux[path])).epsilon(1e-6));
             CHECK(cut.rays[path].t_max < cut.rays[path].t_min);
         } else {
             CHECK(cut.ledgers[path].fate == STOKES_FATE_ABSORBED);
@@ -186,7 +186,7 @@ TEST_CASE("a photon without flux ends", "[scatter_photons][tiny]") {
     const Scattered s = scatter(a, round_from(0, 8), 8);
     for (const std::uint32_t path : a.list) {
         CHECK(s.ledgers[path].fate == STOKES_FATE_ABSORBED);
-        CHECK(s.ledgers[path].absorbed == 0.0f);
+        CHECK(s.ledgers[path].absorbed.energy == 0.0f);
     }
 }
 
@@ -207,7 +207,7 @@ TEST_CASE("reflected flux has the right expectation at every wavelength", "[scat
     for (std::uint32_t path = 0; path < paths; ++path) {
         const bool goes_on = s.ledgers[path].fate == STOKES_FATE_ALIVE;
         alive.add(goes_on ? 1.0 : 0.0);
-        roulette.add(double(s.ledgers[path].roulette));
+        roulette.add(double(s.ledgers[path].roulette.energy));
         for (std::size_t k = 0; k < 16; ++k) carried[k].add(goes_on ? double(s.flux[path].v[k]) : 0.0);
         if (goes_on) directions.add({0.6, 0.0, -0.8}, direction_of(s.rays[path]));
     }

@@ -37,7 +37,7 @@ using namespace stokes;
         F(CameraRecord, down_y) F(CameraRecord, down_z) F(CameraRecord, pad1) \
     S(GatherPoint) F(GatherPoint, x) F(GatherPoint, y) F(GatherPoint, z) F(GatherPoint, pixel) \
         F(GatherPoint, nx) F(GatherPoint, ny) F(GatherPoint, nz) F(GatherPoint, material) \
-        F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, pad0) F(GatherPoint, pad1) \
+        F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, reflected) F(GatherPoint, pad) \
     S(HashGrid) F(HashGrid, origin_x) F(HashGrid, origin_y) F(HashGrid, origin_z) \
         F(HashGrid, cells_per_mm) F(HashGrid, cells_x) F(HashGrid, cells_y) F(HashGrid, cells_z) \
         F(HashGrid, row_mask) F(HashGrid, keys) F(HashGrid, bucket_shift) F(HashGrid, radius_mm) \
@@ -50,25 +50,29 @@ using namespace stokes;
     S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) \
     S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, medium) \
         F(MaterialRecord, fluorescent_fraction) F(MaterialRecord, eta) F(MaterialRecord, excitation_row) \
-        F(MaterialRecord, reradiation_row) F(MaterialRecord, pad0) F(MaterialRecord, pad1) \
+        F(MaterialRecord, reradiation_row) F(MaterialRecord, sigma_row) F(MaterialRecord, exit_scale) \
     S(PassConstants) F(PassConstants, lambda_nm) F(PassConstants, to_x) F(PassConstants, to_y) \
-        F(PassConstants, to_z) \
+        F(PassConstants, to_z) F(PassConstants, chain) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
-        F(PassConstants, offset_mm) F(PassConstants, wavelengths) F(PassConstants, pad0) F(PassConstants, pad1) F(PassConstants, pad2) \
+        F(PassConstants, offset_mm) F(PassConstants, transport) F(PassConstants, first_collision_only) \
+        F(PassConstants, pad0) F(PassConstants, pad1) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \
         F(PathLedger, stored) F(PathLedger, fate) F(PathLedger, missed_exits) F(PathLedger, rays) \
-        F(PathLedger, reference_flux) F(PathLedger, conversions) F(PathLedger, pad) \
-    S(LedgerSums) F(LedgerSums, flux) F(LedgerSums, fates) F(LedgerSums, missed_exits) F(LedgerSums, rays) \
-        F(LedgerSums, pad) \
+        F(PathLedger, reference_flux) F(PathLedger, conversions) F(PathLedger, reflections) F(PathLedger, pad) \
+    S(LightSum) F(LightSum, energy) F(LightSum, photons) \
+    S(LedgerSums) F(LedgerSums, light) F(LedgerSums, fates) F(LedgerSums, missed_exits) F(LedgerSums, rays) \
+        F(LedgerSums, reflections) F(LedgerSums, pad) \
+    S(WalkSlots) F(WalkSlots, first) F(WalkSlots, limit) F(WalkSlots, pad) \
     S(SurfacePoint) F(SurfacePoint, x) F(SurfacePoint, y) F(SurfacePoint, z) F(SurfacePoint, material) \
         F(SurfacePoint, nx) F(SurfacePoint, ny) F(SurfacePoint, nz) F(SurfacePoint, body) \
     S(ExitPoint) F(ExitPoint, x) F(ExitPoint, y) F(ExitPoint, z) F(ExitPoint, r_mm) F(ExitPoint, nx) \
         F(ExitPoint, ny) F(ExitPoint, nz) F(ExitPoint, row) F(ExitPoint, path) F(ExitPoint, material) \
-        F(ExitPoint, kept) F(ExitPoint, converted) \
-    S(EventRound) F(EventRound, count) F(EventRound, event) F(EventRound, component) \
+        F(ExitPoint, way_mm) F(ExitPoint, scale) F(ExitPoint, kept) F(ExitPoint, event_light) \
+    S(EventRound) F(EventRound, count) F(EventRound, event) F(EventRound, component) F(EventRound, sampler) \
         F(EventRound, first_exit) F(EventRound, first_slot) F(EventRound, slot_limit) \
-        F(EventRound, second_exit) F(EventRound, last) \
+        F(EventRound, second_exit) F(EventRound, second_slot) F(EventRound, second_limit) F(EventRound, last) \
+        F(EventRound, pad) \
     S(ListCounts) F(ListCounts, alive) F(ListCounts, diffuse) F(ListCounts, fluorescence) \
         F(ListCounts, elastic) \
     S(PhotonHead) F(PhotonHead, x) F(PhotonHead, y) F(PhotonHead, z) F(PhotonHead, normal) \

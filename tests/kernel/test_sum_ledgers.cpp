@@ -13,9 +13,11 @@ std::vector<PathLedger> random_ledgers(std::uint32_t count) {
     std::uniform_real_distribution<float> uniform(-0.5f, 2.0f);
     std::vector<PathLedger> ledgers(count);
     for (PathLedger& l : ledgers) {
-        for (float* x : {&l.emitted, &l.absorbed, &l.stokes_loss, &l.escaped, &l.dropped, &l.roulette,
-                         &l.created, &l.stored, &l.reference_flux})
-            *x = uniform(generator);
+        for (LightSum* x : {&l.emitted, &l.absorbed, &l.stokes_loss, &l.escaped, &l.dropped, &l.roulette,
+                            &l.created, &l.stored})
+            *x = {uniform(generator), 500.0f * uniform(generator)};
+        l.reference_flux = uniform(generator);
+        l.reflections = std::uint32_t(generator() % 5);
         l.fate = std::uint32_t(generator() % STOKES_FATE_COUNT);
         l.missed_exits = std::uint32_t(generator() % 3);
         l.rays = std::uint32_t(generator() % 1000);
@@ -36,20 +38,27 @@ void check_sums(std::uint32_t count, std::uint32_t chunk_size) {
         .launch(chunks, count, chunk_size, on_device(ledgers), out);
     const std::vector<LedgerSums> sums = out.download();
     for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-        std::vector<double> flux(8, 0.0);
+        std::vector<double> energy(8, 0.0), photons(8, 0.0);
         std::vector<std::uint32_t> fates(STOKES_FATE_COUNT, 0);
-        std::uint32_t missed = 0, rays = 0;
+        std::uint32_t missed = 0, rays = 0, reflections = 0;
         for (std::uint32_t i = chunk * chunk_size; i < std::min(count, (chunk + 1) * chunk_size); ++i) {
             const PathLedger& l = ledgers[i];
-            const float values[] = {l.emitted, l.absorbed, l.stokes_loss, l.escaped,
-                                    l.dropped, l.roulette, l.created,     l.stored};
-            for (std::size_t k = 0; k < 8; ++k) flux[k] += static_cast<double>(values[k]);
+            const LightSum values[] = {l.emitted, l.absorbed, l.stokes_loss, l.escaped,
+                                       l.dropped, l.roulette, l.created,     l.stored};
+            for (std::size_t k = 0; k < 8; ++k) {
+                energy[k] += static_cast<double>(values[k].energy);
+                photons[k] += static_cast<double>(values[k].photons);
+            }
             ++fates[l.fate];
             missed += l.missed_exits;
             rays += l.rays;
+            reflections += l.reflections;
         }
-        for (std::size_t k = 0; k < 8; ++k)
-            CHECK(static_cast<double>(sums[chunk].flux[k]) == Approx(flux[k]).epsilon(1e-5).margin(1e-3));
+        for (std::size_t k = 0; k < 8; ++k) {
+            CHECK(static_cast<double>(sums[chunk].light[k].energy) == Approx(energy[k]).epsilon(1e-5).margin(1e-3));
+            CHECK(static_cast<double>(sums[chunk].light[k].photons) == Approx(photons[k]).epsilon(1e-5).margin(0.5));
+        }
+        CHECK(sums[chunk].reflections == reflections);
         for (std::size_t k = 0; k < fates.size(); ++k) CHECK(sums[chunk].fates[k] == fates[k]);
         CHECK(sums[chunk].missed_exits == missed);
         CHECK(sums[chunk].rays == rays);

@@ -35,7 +35,7 @@ TEST_CASE("light that grows without bound is cut and counted", "[overflow]") {
     scene.render.photons_per_pass = 2000;
     Renderer renderer(test_device(), scene);
     renderer.render_pass(0);
-    const Ledger ledger = renderer.book().ledger();
+    const Balance ledger = renderer.book().ledger().power;
     CHECK(renderer.book().dropped().at("overflow") + renderer.book().dropped().at("event_limit") > 0);
     CHECK(ledger.created > ledger.emitted);
     for (const double v : {ledger.absorbed, ledger.stokes_loss, ledger.dropped, ledger.roulette, ledger.created,

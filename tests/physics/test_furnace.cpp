@@ -38,7 +38,7 @@ TEST_CASE("radiance in a closed furnace is 1 / (1 - R)", "[furnace]") {
         // Pixels share photons, so the spread over pixels understates the error of their mean; the bound is that of
         // the roughly 1e5 photons a pass, plus the facets of the sphere.
         CHECK(radiance.mean() == Approx(expected).epsilon(0.01));
-        const Ledger ledger = renderer.book().ledger();
+        const Balance ledger = renderer.book().ledger().power;
         CHECK(std::abs(ledger.imbalance()) < 1e-4);
         CHECK(ledger.escaped == 0.0);
         // Each photon is stored once at every event: the flux that arrives is emitted / (1 - R).

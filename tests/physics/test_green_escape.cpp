@@ -4,28 +4,12 @@
 #include "host/subsurface/escape.hpp"
 #include "host/subsurface/quadrature.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/half_space.hpp"
 #include "tests/support/input_error.hpp"
 
 using namespace stokes;
 
 namespace {
-
-// Quadrature of integral_0^inf f(t) exp(-t) dt, panels graded toward 0: nodes and weights.
-struct FirstCollision {
-    std::vector<double> t, weight;
-
-    FirstCollision() {
-        const GaussLegendre rule(16);
-        std::vector<double> edges{0.0};
-        for (int k = -14; k <= 5; ++k) edges.push_back(std::ldexp(1.0, k));
-        edges.push_back(45.0);
-        for (std::size_t p = 0; p + 1 < edges.size(); ++p)
-            for (std::size_t i = 0; i < rule.node.size(); ++i) {
-                t.push_back(edges[p] + (edges[p + 1] - edges[p]) * rule.node[i]);
-                weight.push_back((edges[p + 1] - edges[p]) * rule.weight[i] * std::exp(-t.back()));
-            }
-    }
-};
 
 // Light that arrives within the medium at cosine mu: what leaves after one collision, and after all.
 struct Reflectance {
@@ -33,22 +17,13 @@ struct Reflectance {
 };
 
 Reflectance reflectance_within(double eta, double mu, double albedo) {
-    static const FirstCollision first;
-    std::vector<double> depths;
-    for (const double t : first.t) depths.push_back(t * mu);
-    const HalfSpaceEscape escape(eta, depths);
-    const std::vector<double> total = escape.total(albedo);
-    Reflectance result;
-    for (std::size_t i = 0; i < depths.size(); ++i) {
-        result.single += albedo * first.weight[i] * escape.unscattered()[i];
-        result.total += albedo * first.weight[i] * total[i];
-    }
-    return result;
+    const Escaping share = escaping_share(eta, mu, albedo);
+    return {albedo * share.direct, albedo * share.total};
 }
 
 // From outside, cosine mu, the specular reflection included.
 double reflectance_outside(double eta, double mu, double albedo) {
-    const double mu_within = std::sqrt(1.0 - (1.0 - mu * mu) / (eta * eta));
+    const double mu_within = cosine_within(eta, mu);
     const double specular = internal_reflectance(mu_within, eta);
     return specular + (1.0 - specular) * reflectance_within(eta, mu_within, albedo).total;
 }

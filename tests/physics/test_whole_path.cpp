@@ -49,7 +49,7 @@ std::vector<Sample> block_samples(Scene scene, std::uint32_t seed, std::uint32_t
 // PHYSICS section 7: the ledger closes to 1e-4 of what was emitted, every photon has one fate, nothing is
 // cut.
 TEST_CASE("whole renders account for all light and all photons", "[whole_path]") {
-    for (const Scene& scene : {small_scene(), prisms()}) {
+    for (const Scene& scene : {small_scene(), small_scene(Transport::conserving), prisms()}) {
         CAPTURE(scene.file);
         const std::uint32_t passes = 6;
         Renderer renderer(test_device(), scene);
@@ -60,10 +60,12 @@ TEST_CASE("whole renders account for all light and all photons", "[whole_path]")
                 expected_w += scene.lights[0].flux.at(lambda) * image_weight_nm(300, 780) / passes;
         }
         const LedgerBook& book = renderer.book();
-        const Ledger ledger = book.ledger();
+        const Ledger account = book.ledger();
+        const Balance& ledger = account.power;
         CAPTURE(ledger.imbalance(), ledger.created, ledger.roulette, ledger.dropped, ledger.emitted);
         CHECK(ledger.emitted == Approx(expected_w).epsilon(1e-4));
         CHECK(std::abs(ledger.imbalance()) < 1e-4);
+        CHECK(std::abs(account.photons.imbalance()) < 1e-4);
         for (const double part : {ledger.absorbed, ledger.stokes_loss, ledger.escaped, ledger.stored}) {
             CHECK(std::isfinite(part));
             CHECK(part > 0.0);
@@ -71,15 +73,15 @@ TEST_CASE("whole renders account for all light and all photons", "[whole_path]")
         CHECK(ledger.dropped >= 0.0);
         CHECK(ledger.created >= 0.0);
         const auto photons = static_cast<std::uint64_t>(scene.render.photons_per_pass) * passes;
-        CHECK(ledger.photons == photons);
-        CHECK(ledger.absorbed_photons + ledger.escaped_photons + ledger.dropped_photons == photons);
-        CHECK(ledger.absorbed_photons > 0);
-        CHECK(ledger.escaped_photons > 0);
+        CHECK(account.paths == photons);
+        CHECK(account.absorbed_paths + account.escaped_paths + account.dropped_paths == photons);
+        CHECK(account.absorbed_paths > 0);
+        CHECK(account.escaped_paths > 0);
         const auto dropped = book.dropped();
         CHECK(dropped.at("event_limit") == 0);
         CHECK(dropped.at("map_full") == 0);
         CHECK(dropped.at("overflow") == 0);
-        CHECK(ledger.dropped_photons <= dropped.at("missed_exit"));
+        CHECK(account.dropped_paths <= dropped.at("missed_exit"));
         // Roulette has mean zero; its spread over photons is below their own flux.
         CHECK(std::abs(ledger.roulette) < 5.0 * ledger.emitted / std::sqrt(static_cast<double>(photons)));
         const FilmImage image = renderer.image();
@@ -123,6 +125,7 @@ TEST_CASE("two seeds give the same picture within their noise", "[whole_path]") 
 TEST_CASE("no light goes through a thin wall", "[whole_path]") {
     const double radius_mm = 5.0, thickness_mm = 0.5;
     Scene scene;
+    scene.render.transport = Transport::paper;
     scene.file = "rooms";
     scene.materials = {diffuse_material(0.9), Material{}};
     add_shape(scene, "box", 0, turned_over(make_box({200.0, 100.0, 100.0})));
@@ -142,8 +145,8 @@ TEST_CASE("no light goes through a thin wall", "[whole_path]") {
         scene.camera.vertical_fov_deg = fov_deg;
         Renderer renderer(test_device(), scene);
         for (std::uint32_t pass = 0; pass < 4; ++pass) renderer.render_pass(pass);
-        CHECK(std::abs(renderer.book().ledger().imbalance()) < 1e-4);
-        CHECK(renderer.book().ledger().escaped == 0.0);
+        CHECK(std::abs(renderer.book().ledger().power.imbalance()) < 1e-4);
+        CHECK(renderer.book().ledger().power.escaped == 0.0);
         return mean_xyz(renderer.image(), Component::surface).y;
     };
     // The dark side of the wall but for its rim; the floor from 10 to 50 mm; both again in the lit room.

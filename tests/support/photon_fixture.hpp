@@ -20,6 +20,11 @@ Buffer<T> on_device(const std::vector<T>& data) {
     return Buffer<T>(test_device(), "test data", data);
 }
 
+// Of the pass [nm].
+inline float test_wavelength(std::size_t i) {
+    return 310.0f + 30.0f * static_cast<float>(i);
+}
+
 inline Buffer<PassConstants> pass_on_device(std::uint32_t seed, std::uint32_t photons = 0,
                                             float offset_mm = 0.0f) {
     PassConstants constants{};
@@ -27,7 +32,11 @@ inline Buffer<PassConstants> pass_on_device(std::uint32_t seed, std::uint32_t ph
     constants.pass = 2;
     constants.photons = photons;
     constants.offset_mm = offset_mm;
-    constants.wavelengths = 481.0f;
+    for (std::size_t i = 0; i < 16; ++i) {
+        constants.lambda_nm[i] = test_wavelength(i);
+        const float k = static_cast<float>(i) + 1.0f;
+        constants.chain[i] = k < 16.0f ? (481.0f - k) / (16.0f - k) * 15.0f / 480.0f : 0.0f;
+    }
     return on_device(std::vector<PassConstants>{constants});
 }
 
@@ -51,6 +60,14 @@ inline double sum_of(const Flux16& flux) {
     return sum;
 }
 
+// Sums of flux and of flux times wavelength, as the ledgers keep them.
+inline LightSum light_of(const Flux16& flux) {
+    double photons = 0.0;
+    for (std::size_t i = 0; i < 16; ++i)
+        photons += static_cast<double>(flux.v[i]) * static_cast<double>(test_wavelength(i));
+    return {static_cast<float>(sum_of(flux)), static_cast<float>(photons)};
+}
+
 inline bool same_bits(const Flux16& a, const Flux16& b) {
     return std::memcmp(a.v, b.v, sizeof(a.v)) == 0;
 }
@@ -65,8 +82,8 @@ inline glm::dvec3 direction_of(const Ray& ray) {
 // The account of a path that has just started with this flux.
 inline PathLedger open_ledger(const Flux16& flux) {
     PathLedger ledger{};
-    ledger.emitted = static_cast<float>(sum_of(flux));
-    ledger.reference_flux = ledger.emitted / 16.0f;
+    ledger.emitted = light_of(flux);
+    ledger.reference_flux = ledger.emitted.energy / 16.0f;
     ledger.rays = 1;
     return ledger;
 }
@@ -77,14 +94,18 @@ inline std::vector<PathLedger> open_ledgers(const std::vector<Flux16>& flux) {
     return ledgers;
 }
 
-// What a ledger leaves unaccounted for, as a share of what was emitted; carried: the path's flux while it is
-// alive.
+// What a ledger leaves unaccounted for, in energy or in photons, whichever is worse, as a share of what was emitted;
+// carried: the path's flux while it is alive.
 inline double imbalance_of(const PathLedger& ledger, const Flux16& carried) {
-    const auto d = [](float x) { return static_cast<double>(x); };
-    const double left = ledger.fate == STOKES_FATE_ALIVE ? sum_of(carried) : 0.0;
-    const double rest = d(ledger.emitted) + d(ledger.created) - d(ledger.absorbed) - d(ledger.stokes_loss) -
-                        d(ledger.escaped) - d(ledger.dropped) - d(ledger.roulette) - left;
-    return ledger.emitted > 0.0f ? rest / d(ledger.emitted) : rest;
+    const LightSum left = ledger.fate == STOKES_FATE_ALIVE ? light_of(carried) : LightSum{0.0f, 0.0f};
+    const auto rest = [&](float LightSum::*part) {
+        const auto d = [&](const LightSum& sum) { return static_cast<double>(sum.*part); };
+        const double difference = d(ledger.emitted) + d(ledger.created) - d(ledger.absorbed) - d(ledger.stokes_loss) -
+                                  d(ledger.escaped) - d(ledger.dropped) - d(ledger.roulette) - d(left);
+        return d(ledger.emitted) > 0.0 ? difference / d(ledger.emitted) : difference;
+    };
+    const double energy = rest(&LightSum::energy), photons = rest(&LightSum::photons);
+    return std::abs(energy) > std::abs(photons) ? energy : photons;
 }
 
 inline double worst_imbalance(const std::vector<PathLedger>& ledgers, const std::vector<Flux16>& carried) {

@@ -76,9 +76,9 @@ struct MadeUpTables {
 
 // Materials 0 and 1 have subsurface scattering in media 1 and 0, material 2 has surface fluorescence.
 inline std::vector<MaterialRecord> translucent_materials() {
-    return {{STOKES_TRANSLUCENT, 1, 0.5f, 1.5f, 3, 4, 0, 0},
-            {STOKES_TRANSLUCENT, 0, 0.3f, 1.0f, 20, 21, 0, 0},
-            {STOKES_TRANSLUCENT, STOKES_NONE, 1.0f, 1.0f, 3, 4, 0, 0}};
+    return {{STOKES_TRANSLUCENT, 1, 0.5f, 1.5f, 3, 4, STOKES_NONE, 0.0f},
+            {STOKES_TRANSLUCENT, 0, 0.3f, 1.0f, 20, 21, STOKES_NONE, 0.0f},
+            {STOKES_TRANSLUCENT, STOKES_NONE, 1.0f, 1.0f, 3, 4, STOKES_NONE, 0.0f}};
 }
 
 // Three rows of reflectance, then excitation and re-radiation of two fluorophores; emission only above the

@@ -75,8 +75,9 @@ Scene furnace_scene(double reflectance) {
     return scene;
 }
 
-Scene slab_scene(double fluorescent_fraction, double angle_deg) {
+Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transport) {
     Scene scene;
+    scene.render.transport = transport;
     scene.file = "slab";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};
@@ -99,8 +100,9 @@ Scene slab_scene(double fluorescent_fraction, double angle_deg) {
     return scene;
 }
 
-Scene small_scene() {
+Scene small_scene(Transport transport) {
     Scene scene;
+    scene.render.transport = transport;
     scene.file = "small";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};

@@ -1,0 +1,153 @@
+#include "host/render/assumptions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/core/log.hpp"
+#include "host/scene/mesh_thickness.hpp"
+#include "host/scene/mesh_topology.hpp"
+
+namespace stokes {
+namespace {
+
+constexpr int first_emission_nm = 300, last_emission_nm = 830;
+constexpr double opaque_mean_free_paths = 3.0;
+constexpr double largest_relative_curvature = 1.0;
+
+// The longest over the render's wavelengths.
+struct Length {
+    double mm = 0.0;
+    int lambda_nm = 0;
+    double sigma_t = 0.0;  // there [1/mm]
+};
+
+// The longer of the diffuse length and this many mean free paths.
+Length longest_reach(const Scene& scene, const Medium& medium, double mean_free_paths) {
+    Length longest;
+    for (int lambda = scene.render.lambda_min_nm; lambda <= scene.render.lambda_max_nm; ++lambda) {
+        const double sigma_a = medium.sigma_a.at(lambda), sigma_t = medium.sigma_s.at(lambda) + sigma_a;
+        const double mm = std::max(1.0 / std::sqrt(3.0 * sigma_a * sigma_t), mean_free_paths / sigma_t);
+        if (mm > longest.mm) longest = {mm, lambda, sigma_t};
+    }
+    return longest;
+}
+
+// The first shape of each body with this material.
+std::vector<const Shape*> bodies_of(const Scene& scene, int material) {
+    std::vector<const Shape*> bodies;
+    for (const Shape& shape : scene.shapes) {
+        const auto known = [&](const Shape* other) { return other->body == shape.body; };
+        if (shape.material == material && std::none_of(bodies.begin(), bodies.end(), known))
+            bodies.push_back(&shape);
+    }
+    return bodies;
+}
+
+// The body farthest from a half-space, by one of the two measures.
+struct Worst {
+    const Shape* shape = nullptr;
+    double value = 0.0;
+    std::size_t failed = 0;  // bodies that fail
+
+    void add(const Shape* candidate, double candidate_value, bool worse) {
+        ++failed;
+        if (shape != nullptr && !worse) return;
+        shape = candidate;
+        value = candidate_value;
+    }
+    std::string name() const {
+        if (failed == 1) return fmt::format("shape \"{}\"", shape->name);
+        return fmt::format("shape \"{}\", of {} such,", shape->name, failed);
+    }
+};
+
+std::string length_text(double mm) {
+    return std::isfinite(mm) ? fmt::format("{:.3g} mm", mm) : "any distance";
+}
+
+std::string thin_line(const Worst& thinnest, const Length& reach) {
+    return fmt::format(
+        "{} is thinner than its light reaches: half of its surface is within {} of the other side (optical "
+        "thickness {:.3g}), the light reaches {} at {} nm",
+        thinnest.name(), length_text(thinnest.value), thinnest.value * reach.sigma_t, length_text(reach.mm),
+        reach.lambda_nm);
+}
+
+std::string curved_line(const Worst& most_curved, const Length& diffuse) {
+    return fmt::format(
+        "{} is curved within a diffuse length: its mean radius of curvature is {}, the diffuse length {} at "
+        "{} nm",
+        most_curved.name(), length_text(1.0 / most_curved.value), length_text(diffuse.mm), diffuse.lambda_nm);
+}
+
+// "" where every body of this material is as good as a half-space.
+std::string failure(const Scene& scene, int material) {
+    const Medium& medium =
+        scene.media[static_cast<std::size_t>(scene.materials[static_cast<std::size_t>(material)].medium)];
+    const Length reach = longest_reach(scene, medium, opaque_mean_free_paths);
+    const Length diffuse = longest_reach(scene, medium, 1.0);
+    Worst thinnest, most_curved;
+    for (const Shape* shape : bodies_of(scene, material)) {
+        const BodyTopology topology = body_topology(scene, shape->body);
+        if (topology.kind == BodyKind::flat || !(topology.area_mm2 > 0.0)) continue;
+        const double thickness = median_thickness_mm(scene, shape->body);
+        if (thickness < reach.mm) thinnest.add(shape, thickness, thickness < thinnest.value);
+        const double curvature = std::abs(topology.mean_curvature_mm) / topology.area_mm2;
+        if (curvature * diffuse.mm > largest_relative_curvature)
+            most_curved.add(shape, curvature, curvature > most_curved.value);
+    }
+    if (thinnest.shape != nullptr) return thin_line(thinnest, reach);
+    if (most_curved.shape != nullptr) return curved_line(most_curved, diffuse);
+    return "";
+}
+
+}  // namespace
+
+std::vector<std::string> model_remarks(const Scene& scene) {
+    std::vector<std::string> lines;
+    if (scene.render.transport != Transport::paper) return lines;
+    for (const Fluorophore& fluorophore : scene.fluorophores) {
+        const double gain =
+            fluorophore.conversion * fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
+        if (gain > 1.0)
+            lines.push_back(fmt::format(
+                "{}: fluorophores.{}: emits up to {:.3g} times what it takes up (conversion_per_nm times the "
+                "sum of its emission)",
+                scene.file, fluorophore.name, gain));
+    }
+    std::string names;
+    for (const Material& material : scene.materials)
+        if (material.fresnel) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
+    if (!names.empty())
+        lines.push_back(fmt::format(
+            "{}: materials: transport \"paper\" leaves out the Fresnel reflection of {}", scene.file, names));
+    return lines;
+}
+
+std::vector<std::string> failed_assumptions(const Scene& scene) {
+    std::vector<std::string> lines;
+    if (scene.render.transport == Transport::walk) return lines;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (material.kind != MaterialKind::translucent || !material.subsurface) continue;
+        const std::string failed = failure(scene, static_cast<int>(i));
+        if (failed.empty()) continue;
+        lines.push_back(fmt::format("{}: materials.{}: {}; transport \"{}\" takes it for a half-space",
+                                    scene.file, material.name, failed,
+                                    transport_words[static_cast<std::size_t>(scene.render.transport)]));
+    }
+    return lines;
+}
+
+void warn_about_models(const Scene& scene) {
+    for (const std::string& line : model_remarks(scene)) warn(line);
+}
+
+void warn_about_assumptions(const Scene& scene) {
+    for (const std::string& line : failed_assumptions(scene)) warn(line);
+}
+
+}  // namespace stokes

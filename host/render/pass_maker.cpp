@@ -1,0 +1,63 @@
+#include "host/render/pass_maker.hpp"
+
+#include <algorithm>
+
+namespace stokes {
+
+namespace {
+
+GreenResampler::Sixteen sixteen(const Flux16& row) {
+    GreenResampler::Sixteen result;
+    std::copy(std::begin(row.v), std::end(row.v), result.begin());
+    return result;
+}
+
+}  // namespace
+
+PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene& on_device)
+    : scene_(scene), on_device_(on_device), wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
+    buffers_.constants = Buffer<PassConstants>(device, "pass constants", 1);
+    buffers_.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count());
+    buffers_.photon_flux = Buffer<Flux16>(device, "photon flux of the lights", scene.lights.size());
+    buffers_.radiance = Buffer<Flux16>(device, "radiance of the lights", scene.lights.size());
+    const DeviceTables& tables = on_device.tables;
+    if (on_device.transport == Transport::paper) resample_ = Program(device, "resample_tables.cl").kernel("resample_table");
+    for (const auto& [eta, table] : tables.green_tables) green_[eta] = std::make_unique<GreenResampler>(device, table);
+    if (!tables.green.empty())
+        green_tables_ = {tables.at_wavelengths, Buffer<Flux16>(device, "probabilities of escape", tables.green_rows),
+                         tables.mean_rows, tables.cumulative_rows};
+}
+
+void PassMaker::make(std::uint32_t pass, std::uint32_t photons) {
+    make(pass_wavelengths(scene_.render, pass), pass, photons);
+}
+
+void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons) {
+    spectra_ = make_pass_spectra(scene_, on_device_.light_probability, on_device_.light_surface_area_mm2, wavelengths,
+                                 pass, photons);
+    spectra_.constants.offset_mm = on_device_.offset_mm;
+    buffers_.constants.upload(&spectra_.constants, 1);
+    buffers_.rows.upload(spectra_.rows);
+    buffers_.photon_flux.upload(spectra_.photon_flux);
+    buffers_.radiance.upload(spectra_.radiance);
+    resample_tables();
+}
+
+void PassMaker::resample_tables() {
+    const DeviceTables& tables = on_device_.tables;
+    if (on_device_.transport == Transport::paper) {
+        const EvenAxis& lambda = tables.wavelengths;
+        wavelengths_.upload(spectra_.constants.lambda_nm, STOKES_WAVELENGTHS);
+        resample_.launch(tables.entries, tables.values, static_cast<std::uint32_t>(lambda.count),
+                         static_cast<float>(lambda.first), static_cast<float>(lambda.step), wavelengths_,
+                         tables.at_wavelengths, tables.entries);
+    }
+    const SpectraLayout layout(scene_);
+    for (const GreenOwner& owner : tables.green) {
+        const std::uint32_t row = layout.sigma_row(owner.medium);
+        green_.at(owner.eta)->resample(owner.shape, owner.first_row, sixteen(spectra_.rows[row]),
+                                       sixteen(spectra_.rows[row + 1]), green_tables_);
+    }
+}
+
+}  // namespace stokes
