@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     stokes::add_render_command(app);
     stokes::add_tables_command(app);
+    stokes::add_probe_command(app);
     stokes::add_devices_command(app);
     try {
         check_subcommand(app, argc, argv);

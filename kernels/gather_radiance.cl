@@ -34,9 +34,9 @@ FORCE_INLINE uint maps_of(MaterialRecord material) {
 
 // Work-items: one per camera ray, in the order of lib/tiles.clh. Finds the point each ray sees, and adds the
 // light it emits to the film's surface layer.
-// A material with Fresnel reflection is seen with the probability 1 - R of trace_seen: the light from below it leaves as
-// (1 - R) exit_scale, PHYSICS section 4, so that its weight is exit_scale; light that the surface itself emits is the same
-// in all directions, and is divided by 1 - R.
+// A material with Fresnel reflection is seen with the probability 1 - R of trace_seen: the light from below it
+// leaves as (1 - R) exit_scale, PHYSICS section 4, so that its weight is exit_scale; light that the surface itself
+// emits is the same in all directions, and is divided by 1 - R.
 // Reads rays, hits [width * height], triangles, shapes, materials of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
 // Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].

@@ -22,10 +22,10 @@ FORCE_INLINE bool on_surface(BvhScene scene, __global const Triangle* triangles,
 }
 
 // Work-items: count, one a point. Reads: points, the scene, pass (seed, pass).
-// Multiplies GatherPoint.weight by how many random places of the disk it took until one was on the surface. When a share p
-// of the disk is on the surface the mean of that is 1/p, so that the density estimate times it divides by the area that can
-// hold photons, without bias (the mean of a geometric distribution; Booth 2007, "Unbiased Monte Carlo estimation of the
-// reciprocal of an integral"). At most STOKES_GATHER_MOST_TRIALS.
+// Multiplies GatherPoint.weight by how many random places of the disk it took until one was on the surface. When a
+// share p of the disk is on the surface the mean of that is 1/p, so that the density estimate times it divides by the
+// area that can hold photons, without bias (the mean of a geometric distribution; Booth 2007, "Unbiased Monte Carlo
+// estimation of the reciprocal of an integral"). At most STOKES_GATHER_MOST_TRIALS.
 __kernel void measure_disks(uint count, float radius_mm, __global const PassConstants* pass,
                             __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
                             __global const Triangle* triangles, __global GatherPoint* points) {

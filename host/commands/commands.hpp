@@ -7,6 +7,7 @@ namespace stokes {
 
 void add_render_command(CLI::App& app);
 void add_tables_command(CLI::App& app);
+void add_probe_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 
 // SIGINT or SIGTERM if one ended a render early, 0 otherwise.

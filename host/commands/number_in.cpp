@@ -1,6 +1,8 @@
 #include "host/commands/number_in.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
 
 namespace stokes {
 
@@ -12,6 +14,18 @@ CLI::Validator number_in(double low, double high) {
         return fmt::format("expected a number, {}, got \"{}\"", range, text);
     };
     return CLI::Validator(check, range);
+}
+
+CLI::Validator word_of(const std::vector<std::string>& words) {
+    const auto check = [words](const std::string& text) {
+        if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+        return fmt::format("expected {}, got \"{}\"", fmt::join(words, ", "), text);
+    };
+    return CLI::Validator(check, fmt::format("{}", fmt::join(words, ", ")));
+}
+
+std::size_t index_of_word(const std::string& word, const std::vector<std::string>& words) {
+    return static_cast<std::size_t>(std::find(words.begin(), words.end(), word) - words.begin());
 }
 
 }  // namespace stokes

@@ -29,7 +29,7 @@ void check_outputs(const std::vector<std::string>& outputs, const std::string& s
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const std::string& file = outputs[i];
         if (file.empty()) continue;
-        if (same_file(file, scene)) throw InputError(file + ": this output would replace the scene");
+        if (!scene.empty() && same_file(file, scene)) throw InputError(file + ": this output would replace the scene");
         for (std::size_t j = 0; j < i; ++j)
             if (!outputs[j].empty() && same_file(file, outputs[j]))
                 throw InputError(file + ": expected another file for each output");

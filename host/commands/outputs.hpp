@@ -9,7 +9,7 @@ namespace stokes {
 
 // What the render would find out only at its end: InputError when a file of outputs cannot be written (no
 // folder, no permission, no regular file), when two are the same file, or when one is the scene. Names that
-// are empty stand for no output.
+// are empty stand for no output, and for no scene.
 void check_outputs(const std::vector<std::string>& outputs, const std::string& scene);
 
 struct Output {

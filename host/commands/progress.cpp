@@ -48,6 +48,16 @@ std::string progress_line(const ProgressState& state, std::size_t columns, bool 
     return remaining.substr(0, columns);
 }
 
+void print_share(double share) {
+    static int printed = -1;
+    const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    const int percent = static_cast<int>(100.0 * share) / (terminal ? 1 : 10) * (terminal ? 1 : 10);
+    if (percent == printed) return;
+    printed = percent;
+    fmt::print(stderr, terminal ? "\r{:3d} %{}" : "{:3d} %{}", percent, !terminal || percent == 100 ? "\n" : "");
+    std::fflush(stderr);
+}
+
 Progress::Progress(std::uint32_t passes, bool quiet)
     : passes_(passes), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), last_(start_) {}
 

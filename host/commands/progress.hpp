@@ -19,6 +19,10 @@ struct ProgressState {
 // remaining time is always there.
 std::string progress_line(const ProgressState& state, std::size_t columns, bool with_bar);
 
+// The share of a work that is done, in [0, 1], on standard error: on a terminal one line that is rewritten, else a line
+// for every tenth.
+void print_share(double share);
+
 // On a terminal one line that is rewritten; elsewhere plain lines, one every few seconds. Writes to standard
 // error.
 class Progress {

@@ -166,7 +166,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     check_outputs({options.exr_file, options.png_file, options.stats_file}, options.scene_file);
     Scene scene = read_scene(options.scene_file);
     apply(command, options, scene);
-    if (scene.render.transport == Transport::walk) check_walkable(scene);
+    if (scene.render.transport == Transport::walk) check_walkable(scene);  // before the device is opened
     warn_about_models(scene);
     warn_about_assumptions(scene);
     std::signal(SIGINT, catch_signal);

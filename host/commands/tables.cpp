@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -8,6 +7,7 @@
 #include <system_error>
 
 #include "host/commands/commands.hpp"
+#include "host/commands/progress.hpp"
 #include "host/core/error.hpp"
 #include "host/render/green_walk.hpp"
 #include "host/scene/scene_reader.hpp"
@@ -69,18 +69,6 @@ void run_tables(const TablesOptions& options) {
     if (!any)
         throw InputError(fmt::format(
             "{}: no translucent material with subsurface scattering, so no tables to write", options.scene));
-}
-
-// One line that is written over on a terminal, else a line for every tenth.
-void print_share(double share) {
-    static int printed = -1;
-    const bool terminal = isatty(STDERR_FILENO) != 0;
-    const int percent = static_cast<int>(100.0 * share) / (terminal ? 1 : 10) * (terminal ? 1 : 10);
-    if (percent == printed) return;
-    printed = percent;
-    fmt::print(stderr, terminal ? "\r{:3d} %{}" : "{:3d} %{}", percent,
-               !terminal || percent == 100 ? "\n" : "");
-    std::fflush(stderr);
 }
 
 void run_green(const TablesOptions& options) {

@@ -60,7 +60,7 @@ struct Worst {
     }
     std::string name() const {
         if (failed == 1) return fmt::format("shape \"{}\"", shape->name);
-        return fmt::format("shape \"{}\", of {} such,", shape->name, failed);
+        return fmt::format("shape \"{}\" (and {} more)", shape->name, failed - 1);
     }
 };
 

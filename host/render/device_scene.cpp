@@ -9,6 +9,7 @@
 #include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
 #include "host/scene/bvh_builder.hpp"
+#include "host/scene/mesh_topology.hpp"
 #include "host/subsurface/distance_sampler.hpp"
 #include "host/subsurface/fresnel.hpp"
 
@@ -145,6 +146,10 @@ DeviceTables make_tables(const Device& device, const Scene& scene) {
 
 std::vector<std::uint32_t> body_kinds(const Scene& scene) {
     std::vector<std::uint32_t> kinds(static_cast<std::size_t>(std::max(scene.body_count, 1)), STOKES_BODY_CLOSED);
+    if (scene.render.transport != Transport::walk) return kinds;
+    const std::vector<BodyKind> walkable = check_walkable(scene);
+    for (std::size_t body = 0; body < walkable.size(); ++body)
+        if (walkable[body] == BodyKind::flat) kinds[body] = STOKES_BODY_FLAT;
     return kinds;
 }
 

@@ -183,7 +183,9 @@ void PhotonTracer::walk_below_surfaces(const DeviceScene& scene, const PassBuffe
                   scene.grid, scene.triangles, scene.materials, pass.rows, rays_, flux_, ledgers_, maps[0].heads(),
                   maps[0].flux(), maps[1].heads(), maps[1].flux(), maps[2].heads(), maps[2].flux());
     deposits_ += round.count;
-    for (std::uint32_t m = 0; m < 3; ++m) maps[m].advance(round.count);
+    std::uint32_t refused = 0;  // the maps are of one size and grow together; a path is in one of them
+    for (std::uint32_t m = 0; m < 3; ++m) refused = std::max(refused, maps[m].advance(round.count));
+    refused_slots_ += refused;
 }
 
 // Sends on what left: rounds as scatter_below_surfaces made them.

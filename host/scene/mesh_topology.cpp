@@ -47,7 +47,7 @@ class Welder {
     }
 
     std::uint32_t index_of(const glm::vec3& point, std::vector<glm::dvec3>& points) {
-        const glm::vec3 p = point ;  // -0 becomes 0
+        const glm::vec3 p = point + glm::vec3(0.0f);  // -0 becomes 0
         std::array<std::uint32_t, 3> bits{};
         std::memcpy(bits.data(), &p, sizeof bits);
         std::uint64_t hash = bits[0];

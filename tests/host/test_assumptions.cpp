@@ -123,7 +123,7 @@ TEST_CASE("A material has one line, of its worst body") {
     scene.shapes.push_back(soap);
     const Lines lines = failed_assumptions(scene);
     REQUIRE(lines.size() == 2);
-    CHECK(lines[0].find("materials.wax: shape \"plate 2\", of 3 such, is thinner") != std::string::npos);
+    CHECK(lines[0].find("materials.wax: shape \"plate 2\" (and 2 more) is thinner") != std::string::npos);
     CHECK(lines[0].find("within 2 mm") != std::string::npos);
     CHECK(lines[1].find("materials.soap: shape \"soap plate\" is thinner") != std::string::npos);
 }

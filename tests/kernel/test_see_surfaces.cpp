@@ -102,7 +102,9 @@ class Bench {
 
     const std::vector<Triangle>& triangles() const { return triangles_; }
     // Which plate a hit is on, -1: none.
-    static int plate_of(const Hit& hit) { return hit.triangle == STOKES_NONE ? -1 : static_cast<int>(hit.triangle / 2); }
+    static int plate_of(const Hit& hit) {
+        return hit.triangle == STOKES_NONE ? -1 : static_cast<int>(hit.triangle / 2);
+    }
 
   private:
     std::vector<Triangle> triangles_;
@@ -207,7 +209,8 @@ TEST_CASE("passes and pixels draw reflections of their own", "[see_surfaces][tin
     CHECK(std::count(ended[0].begin(), ended[0].end(), true) < 54);
 }
 
-// Backs, other materials, an index of one, nothing at all: rays stay as they were, and hits are those of trace_closest_all.
+// Backs, other materials, an index of one, nothing at all: rays stay as they were, and hits are those of
+// trace_closest_all.
 TEST_CASE("what does not reflect is seen as without reflection", "[see_surfaces][tiny]") {
     for (const Plate& plate : {Plate{0.0f, -1.0f, glossy}, Plate{0.0f, 1.0f, grey}, Plate{0.0f, 1.0f, black},
                                Plate{0.0f, 1.0f, clear}, Plate{9.0f, 1.0f, glossy}}) {

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double eta = 1.5;
 
-// A hollow sphere of 100 mm radius whose black wall shines inward with radiance 1. Material 1, for what stands in it, is a
-// medium that absorbs nothing, of mean free path 0.005 mm, below a smooth surface.
+// A hollow sphere of 100 mm radius whose black wall shines inward with radiance 1. Material 1, for what stands in it,
+// is a medium that absorbs nothing, of mean free path 0.005 mm, below a smooth surface.
 Scene furnace_with_smooth_material() {
     Scene scene = furnace_scene(0.0);
     Medium medium;

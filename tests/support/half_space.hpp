@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "host/subsurface/escape.hpp"
@@ -35,12 +37,17 @@ struct Escaping {
 
 inline Escaping escaping_share(double eta, double mu, double albedo, double ratio = 1.0) {
     static const FirstCollision first;
-    std::vector<double> depths;
-    for (const double t : first.t) depths.push_back(t * mu * ratio);
-    const HalfSpaceEscape escape(eta, depths);
+    static std::map<std::pair<double, double>, HalfSpaceEscape> known;  // by eta and scale of the depths
+    const std::pair<double, double> key{eta, mu * ratio};
+    if (known.count(key) == 0) {
+        std::vector<double> depths;
+        for (const double t : first.t) depths.push_back(t * mu * ratio);
+        known.emplace(key, HalfSpaceEscape(eta, depths));
+    }
+    const HalfSpaceEscape& escape = known.at(key);
     const std::vector<double> total = escape.total(albedo);
     Escaping result;
-    for (std::size_t i = 0; i < depths.size(); ++i) {
+    for (std::size_t i = 0; i < total.size(); ++i) {
         result.direct += first.weight[i] * escape.unscattered()[i];
         result.total += first.weight[i] * total[i];
     }

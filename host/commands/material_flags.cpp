@@ -1,0 +1,143 @@
+#include "host/commands/material_flags.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "host/commands/number_in.hpp"
+#include "host/core/csv_table.hpp"
+#include "host/core/error.hpp"
+#include "host/core/media_limits.hpp"
+#include "host/core/text_input.hpp"
+
+namespace stokes {
+
+namespace {
+
+const char* const material_flags[] = {"--sigma-s",  "--sigma-a",    "--eta",      "--fresnel",
+                                      "--fraction", "--excitation", "--emission", "--quantum-yield"};
+const char* const spectrum_type = "NUMBER|FILE.csv[:COLUMN]";
+
+constexpr int first_lambda_nm = 300, last_lambda_nm = 830;
+
+// FILE, or FILE:COLUMN where there is no file of the whole name; without a column the first after the
+// wavelengths.
+Spectrum csv_column(const std::string& text, Outside outside) {
+    std::error_code ignored;
+    const std::size_t colon = text.rfind(':');
+    const bool named = colon != std::string::npos && !std::filesystem::exists(text, ignored);
+    const CsvTable table = read_csv(named ? text.substr(0, colon) : text);
+    return csv_spectrum(table, named ? text.substr(colon + 1) : table.columns[1], outside);
+}
+
+Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside, double maximum) {
+    const auto number = parse_double(text);
+    Spectrum spectrum;
+    if (number) {
+        spectrum = Spectrum::constant(*number);
+    } else {
+        try {
+            spectrum = csv_column(text, outside);
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: {}", flag, error.what()));
+        }
+    }
+    for (const double value : spectrum.value)
+        if (!(value >= 0.0 && value <= maximum))
+            throw InputError(fmt::format("{}: expected {} in [0, {:g}], got {}", flag,
+                                         number ? "a number" : "values", maximum, value));
+    return spectrum;
+}
+
+Medium medium_of(const MaterialFlags& flags) {
+    Medium medium;
+    medium.name = "command line";
+    medium.sigma_s = spectrum_of("--sigma-s", flags.sigma_s, Outside::hold, 1e12);
+    medium.sigma_a = spectrum_of("--sigma-a", flags.sigma_a, Outside::hold, 1e12);
+    medium.eta = flags.eta;
+    for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
+        const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
+        if (!(sigma_t >= smallest_sigma_t_per_mm && sigma_t <= largest_sigma_t_per_mm))
+            throw InputError(fmt::format(
+                "--sigma-s, --sigma-a: expected a sum in [{:g}, {:g}] 1/mm from {} to {} nm, got {} at {} nm",
+                smallest_sigma_t_per_mm, largest_sigma_t_per_mm, first_lambda_nm, last_lambda_nm, sigma_t,
+                lambda));
+    }
+    return medium;
+}
+
+Fluorophore fluorophore_of(const MaterialFlags& flags) {
+    Fluorophore fluorophore;
+    fluorophore.name = "command line";
+    fluorophore.excitation = spectrum_of("--excitation", flags.excitation, Outside::zero, 1.0);
+    fluorophore.emission = spectrum_of("--emission", flags.emission, Outside::zero, 1.0);
+    fluorophore.quantum_yield = flags.quantum_yield;
+    if (!(fluorophore.emission.sum_1nm(first_lambda_nm, last_lambda_nm) > 0.0))
+        throw InputError(
+            fmt::format("--emission: expected some from {} to {} nm, got none at any whole nanometre",
+                        first_lambda_nm, last_lambda_nm));
+    return fluorophore;
+}
+
+// All of them or none; whether they are there.
+bool together(const CLI::App& command, const std::vector<const char*>& flags) {
+    const char* given = nullptr;
+    const char* missing = nullptr;
+    for (const char* flag : flags) (command.count(flag) ? given : missing) = flag;
+    if (given != nullptr && missing != nullptr)
+        throw InputError(fmt::format("{}: expected {} as well", given, missing));
+    return given != nullptr;
+}
+
+}  // namespace
+
+void add_material_flags(CLI::App& command, MaterialFlags& flags) {
+    const auto spectrum = [&](const char* flag, std::string& text, const char* what) {
+        command.add_option(flag, text, what)->type_name(spectrum_type)->group("Material");
+    };
+    spectrum("--sigma-s", flags.sigma_s, "Scattering coefficient [1/mm]");
+    spectrum("--sigma-a", flags.sigma_a, "Absorption coefficient [1/mm]");
+    command.add_option("--eta", flags.eta, "Refractive index; default 1")
+        ->check(number_in(1.0, largest_green_eta))
+        ->group("Material");
+    command.add_flag("--fresnel", flags.fresnel, "The surface reflects")->group("Material");
+    command
+        .add_option("--fraction", flags.fraction, "Share of collisions that meet a fluorophore, where E is 1")
+        ->type_name("C")
+        ->check(number_in(0.0, 1.0))
+        ->group("Material");
+    spectrum("--excitation", flags.excitation, "Excitation E, 0 to 1");
+    spectrum("--emission", flags.emission, "Emission, relative, 0 to 1");
+    command
+        .add_option("--quantum-yield", flags.quantum_yield, "Photons emitted for each taken up; default 1")
+        ->type_name("Q")
+        ->check(number_in(0.0, 1.0))
+        ->group("Material");
+}
+
+bool has_material_flags(const CLI::App& command) {
+    for (const char* flag : material_flags)
+        if (command.count(flag)) return true;
+    return false;
+}
+
+ProbeMaterial material_of(const CLI::App& command, const MaterialFlags& flags) {
+    ProbeMaterial material;
+    material.name = "command line";
+    if (!together(command, {"--sigma-s", "--sigma-a"}))
+        throw InputError("probe: expected --sigma-s and --sigma-a");
+    material.medium = medium_of(flags);
+    material.fresnel = flags.fresnel;
+    if (together(command, {"--fraction", "--excitation", "--emission"})) {
+        material.fluorophore = fluorophore_of(flags);
+        material.fluorescent_fraction = flags.fraction;
+    } else if (command.count("--quantum-yield")) {
+        throw InputError("--quantum-yield: expected --fraction, --excitation and --emission as well");
+    }
+    return material;
+}
+
+}  // namespace stokes

@@ -1,0 +1,170 @@
+#include "host/render/probe.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/commands/commands.hpp"
+#include "host/commands/material_flags.hpp"
+#include "host/commands/number_in.hpp"
+#include "host/commands/outputs.hpp"
+#include "host/commands/probe_output.hpp"
+#include "host/commands/progress.hpp"
+#include "host/core/atomic_file.hpp"
+#include "host/core/error.hpp"
+#include "host/core/log.hpp"
+#include "host/scene/scene_reader.hpp"
+
+namespace stokes {
+
+namespace {
+
+struct ProbeOptions {
+    std::string scene_file, material, model, json_file, matrix_file, device;
+    int lambda_nm = 365, lambda_min_nm = 0, lambda_max_nm = 0, threads = 0;
+    double r_max_mm = 0.0;
+    MaterialFlags flags;
+    ProbeSettings settings;
+    bool quiet = false;
+};
+
+// What a scene does not say, the command line or the default does.
+ProbeSettings settings_of(const CLI::App& command, const ProbeOptions& options,
+                          const RenderSettings& render) {
+    ProbeSettings settings = options.settings;
+    settings.transport = render.transport;
+    settings.lambda_min_nm = render.lambda_min_nm;
+    settings.lambda_max_nm = render.lambda_max_nm;
+    if (command.count("--model"))
+        settings.transport = static_cast<Transport>(index_of_word(options.model, transport_words));
+    if (command.count("--lambda-min")) settings.lambda_min_nm = options.lambda_min_nm;
+    if (command.count("--lambda-max")) settings.lambda_max_nm = options.lambda_max_nm;
+    if (command.count("--r-max")) settings.r_max_mm = options.r_max_mm;
+    return settings;
+}
+
+void check_source(const CLI::App& command, const ProbeOptions& options) {
+    const bool scene = !options.scene_file.empty(), flags = has_material_flags(command);
+    if (scene && flags) throw InputError("probe: expected a scene or the material by flags, not both");
+    if (scene && options.material.empty())
+        throw InputError("probe: expected --material, a name in " + options.scene_file);
+    if (!scene && !options.material.empty()) throw InputError("--material: expected a scene that has it");
+    if (!scene && !flags)
+        throw InputError("probe: expected a scene and --material, or a material by --sigma-s and --sigma-a");
+}
+
+void warn_of_drops(const ProbeResult& result) {
+    if (result.dropped > 1e-4)
+        warn(fmt::format(
+            "{} nm: {:.2g} of the light was cut off: it left beyond the sheet's edge, or no room or no "
+            "time was left for it",
+            result.lambda_ex_nm, result.dropped));
+}
+
+std::vector<ProbeResult> sweep(HalfSpaceProbe& probe, bool quiet) {
+    std::vector<ProbeResult> results;
+    const std::vector<int>& grid = probe.grid_nm();
+    for (const int lambda : grid) {
+        if (!quiet) print_share(static_cast<double>(results.size()) / static_cast<double>(grid.size()));
+        results.push_back(probe.measure(lambda));
+        warn_of_drops(results.back());
+    }
+    if (!quiet) print_share(1.0);
+    return results;
+}
+
+void run_probe(const CLI::App& command, const ProbeOptions& options) {
+    check_source(command, options);
+    check_outputs({options.json_file, options.matrix_file}, options.scene_file);
+    ProbeMaterial material;
+    RenderSettings render;
+    if (options.scene_file.empty()) {
+        material = material_of(command, options.flags);
+    } else {
+        const Scene scene = read_scene(options.scene_file);
+        material = probe_material(scene, options.material);
+        render = scene.render;
+    }
+    const ProbeSettings settings = settings_of(command, options, render);
+    if (material.fresnel && settings.transport == Transport::paper)
+        warn("the model paper leaves out Fresnel reflection");
+    const Device device = Device::open(options.device, options.threads);
+    HalfSpaceProbe probe(device, material, settings);
+    const ProbeResult result = probe.measure(options.lambda_nm);
+    warn_of_drops(result);
+    if (!options.quiet) {
+        fmt::print("{}", probe_table(result, material, settings));
+        std::fflush(stdout);
+    }
+    std::vector<ProbeResult> matrix;
+    if (!options.matrix_file.empty()) matrix = sweep(probe, options.quiet);
+    const auto write_json = [&] {
+        write_file_atomically(options.json_file, probe_json(result, material, settings));
+    };
+    const auto write_matrix = [&] {
+        write_file_atomically(options.matrix_file, probe_matrix_csv(matrix, material, settings));
+    };
+    write_outputs({{options.json_file, write_json}, {options.matrix_file, write_matrix}}, options.quiet);
+}
+
+}  // namespace
+
+void add_probe_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "probe",
+        "Measure what a half-space of a translucent material sends back of a narrow beam of one wavelength");
+    const auto options = std::make_shared<ProbeOptions>();
+    ProbeSettings& settings = options->settings;
+    command->add_option("scene", options->scene_file, "Scene file")->type_name("SCENE.json");
+    command->add_option("--material", options->material, "Translucent material of the scene")
+        ->type_name("NAME");
+    add_material_flags(*command, options->flags);
+    command->add_option("--model", options->model, "Transport model; default: the scene's, else conserving")
+        ->type_name("MODEL")
+        ->check(word_of(transport_words));
+    command->add_flag("--first-collision", settings.first_collision_only,
+                      "walk: fluorescence at the first collision only, as the other models have it");
+    command->add_option("--lambda", options->lambda_nm, "Wavelength of the beam [nm]; default 365")
+        ->type_name("NM")
+        ->check(CLI::Range(300, 830));
+    command->add_option("--angle", settings.angle_deg, "Angle of incidence [deg]; default 0")
+        ->type_name("DEG")
+        ->check(number_in(0.0, 89.9));
+    command
+        ->add_option("--photons", settings.photons, "Photons for each set of 16 wavelengths; default 1000000")
+        ->check(number_in(least_probe_photons, 1e12));
+    command->add_option("--seed", settings.seed, "Seed of the random numbers; default 1");
+    command->add_option("--step", settings.step_nm, "Step of the wavelengths that are read [nm]; default 5")
+        ->type_name("NM")
+        ->check(CLI::Range(1, 50));
+    command
+        ->add_option("--lambda-min", options->lambda_min_nm,
+                     "The first of them; default: the scene's, else 300")
+        ->type_name("NM")
+        ->check(CLI::Range(300, 830));
+    command->add_option("--lambda-max", options->lambda_max_nm, "Their end; default: the scene's, else 780")
+        ->type_name("NM")
+        ->check(CLI::Range(300, 830));
+    command->add_option("--bins", settings.bins, "Bins of distance from the beam; default 40")
+        ->check(CLI::Range(2, 10000));
+    command
+        ->add_option("--r-max", options->r_max_mm, "End of the last of them [mm]; default: from the material")
+        ->type_name("MM")
+        ->check(number_in(1e-9, 1e12));
+    command->add_option("--json", options->json_file, "All that was measured")->type_name("FILE.json");
+    command
+        ->add_option("--matrix", options->matrix_file,
+                     "Sweep the beam's wavelength too, and write the effective re-radiation matrix")
+        ->type_name("FILE.csv");
+    command->add_option("--device", options->device, "platform:device, part of a name, cpu or gpu");
+    command->add_option("--threads", options->threads, "CPU threads; default: all")
+        ->check(CLI::Range(1, 4096));
+    command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
+    command->callback([command, options] { run_probe(*command, *options); });
+}
+
+}  // namespace stokes

@@ -1,0 +1,305 @@
+#include "host/render/probe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/core/error.hpp"
+#include "host/render/device_scene.hpp"
+#include "host/render/pass_maker.hpp"
+#include "host/render/photon_tracer.hpp"
+#include "host/render/probe_scene.hpp"
+#include "host/render/probe_sets.hpp"
+#include "host/subsurface/escape.hpp"
+
+namespace stokes {
+
+namespace {
+
+constexpr std::int64_t least_batches = 32, most_photons_per_batch = 65536;
+
+void check(const ProbeMaterial& material, const ProbeSettings& s) {
+    const auto expect = [](bool good, const char* what) {
+        if (!good) throw InputError(fmt::format("probe: expected {}", what));
+    };
+    const auto covered = [](int lambda) {
+        return lambda >= first_probe_lambda_nm && lambda <= last_probe_lambda_nm;
+    };
+    expect(material.medium || material.fluorophore, "a medium, a fluorophore or both");
+    expect(s.angle_deg >= 0.0 && s.angle_deg <= 89.9, "an angle of incidence in [0, 89.9] deg");
+    expect(s.photons >= least_probe_photons && s.photons <= 1000000000000, "photons in [64, 1e12]");
+    expect(covered(s.lambda_min_nm) && covered(s.lambda_max_nm) &&
+               s.lambda_max_nm - s.lambda_min_nm >= STOKES_WAVELENGTHS - 1,
+           "a range of at least 16 whole nanometres within [300, 830] nm");
+    expect(s.step_nm >= 1 && s.step_nm <= 50, "a step in [1, 50] nm");
+    expect(s.bins >= 2 && s.bins <= 10000, "from 2 to 10000 bins");
+    expect(!s.r_max_mm || (*s.r_max_mm >= 1e-9 && *s.r_max_mm <= 1e12),
+           "a largest distance in [1e-9, 1e12] mm");
+    expect(!s.first_collision_only || s.transport == Transport::walk,
+           "fluorescence at the first collision only with the transport walk; it is what the others do");
+}
+
+// Where a batch's sums of a component stand: by wavelength, by bin (the last for what lies beyond), and the
+// total.
+class Layout {
+  public:
+    Layout(std::size_t wavelengths, std::size_t bins) : wavelengths_(wavelengths), bins_(bins) {}
+    std::size_t at_wavelength(std::size_t component, std::size_t i) const { return component * stride() + i; }
+    std::size_t in_bin(std::size_t component, std::size_t bin) const {
+        return component * stride() + wavelengths_ + bin;
+    }
+    std::size_t total(std::size_t component) const { return (component + 1) * stride() - 1; }
+    std::size_t emitted_photons() const { return probe_component_count * stride(); }
+    std::size_t size() const { return probe_component_count * stride() + 1; }
+
+  private:
+    std::size_t stride() const { return wavelengths_ + bins_ + 2; }
+    std::size_t wavelengths_, bins_;
+};
+
+// Means over batches and their standard errors (Welford 1962).
+class BatchMeans {
+  public:
+    explicit BatchMeans(std::size_t size) : mean_(size, 0.0), squares_(size, 0.0) {}
+    void add(const std::vector<double>& batch) {
+        ++count_;
+        for (std::size_t i = 0; i < mean_.size(); ++i) {
+            const double before = batch[i] - mean_[i];
+            mean_[i] += before / count_;
+            squares_[i] += before * (batch[i] - mean_[i]);
+        }
+    }
+    Measured at(std::size_t i) const {
+        return {mean_[i], std::sqrt(squares_[i] / (count_ * (count_ - 1.0)))};
+    }
+
+  private:
+    double count_ = 0.0;
+    std::vector<double> mean_, squares_;
+};
+
+}  // namespace
+
+struct HalfSpaceProbe::Bench {
+    Bench(const Device& on, const ProbeMaterial& probed, const ProbeSettings& s)
+        : device(on),
+          material(probed),
+          settings(s),
+          scene(probe_scene(probed, s)),
+          on_device(on, scene),
+          batches(std::max(least_batches, (s.photons + most_photons_per_batch - 1) / most_photons_per_batch)),
+          photons(static_cast<std::uint32_t>((s.photons + batches - 1) / batches)),
+          pass(on, scene, on_device),
+          tracer(on, photons),
+          maps{PhotonMap(on, "fluorescence", photons), PhotonMap(on, "single scattering", photons),
+               PhotonMap(on, "multiple scattering", photons), PhotonMap(on, "surface", 1)} {
+        on_device.bodies.upload({STOKES_BODY_FLAT});
+        // Far below the mean free paths, so that it matters nowhere.
+        on_device.offset_mm = static_cast<float>(1e-3 * mean_free_paths(material).shortest_mm);
+        for (int lambda = s.lambda_min_nm; lambda <= s.lambda_max_nm; lambda += s.step_nm)
+            grid_nm.push_back(lambda);
+    }
+
+    ProbeGrid probe_grid(int lambda_ex_nm) const;
+    std::vector<double> bin_edges(const ProbeGrid& grid) const;
+    void add_set(const ProbeSet& set, const ProbeResult& result, const Layout& layout, std::size_t sets,
+                 std::vector<double>& sums) const;
+
+    Device device;
+    ProbeMaterial material;
+    ProbeSettings settings;
+    Scene scene;
+    DeviceScene on_device;
+    std::int64_t batches;
+    std::uint32_t photons;  // a batch and set
+    PassMaker pass;
+    PhotonTracer tracer;
+    PhotonMaps maps;
+    std::vector<int> grid_nm;
+};
+
+ProbeGrid HalfSpaceProbe::Bench::probe_grid(int lambda_ex_nm) const {
+    ProbeGrid grid;
+    grid.lambda_ex_nm = lambda_ex_nm;
+    grid.step_nm = settings.step_nm;
+    grid.lambda_nm = grid_nm;
+    const auto place = std::lower_bound(grid.lambda_nm.begin(), grid.lambda_nm.end(), lambda_ex_nm);
+    if (place == grid.lambda_nm.end() || *place != lambda_ex_nm) grid.lambda_nm.insert(place, lambda_ex_nm);
+
+    const auto emits = [&](int lambda) {
+        return lambda > lambda_ex_nm && material.fluorophore->emission.at(lambda) > 0.0;
+    };
+    const bool fluoresces = material.fluorophore && material.fluorescent_fraction > 0.0 &&
+                            material.fluorophore->excitation.at(lambda_ex_nm) > 0.0;
+    if (fluoresces) std::copy_if(grid_nm.begin(), grid_nm.end(), std::back_inserter(grid.emitting), emits);
+
+    const bool again = fluoresces && settings.transport == Transport::walk && !settings.first_collision_only;
+    for (int lambda = first_probe_lambda_nm; lambda <= last_probe_lambda_nm; ++lambda) {
+        const bool inert = !again || !emits(lambda) || grid.emitting.empty() || lambda > grid.emitting.back();
+        if (lambda != lambda_ex_nm && inert &&
+            !std::binary_search(grid.emitting.begin(), grid.emitting.end(), lambda))
+            grid.spare.push_back(lambda);
+    }
+    // The nearest have the most similar mean free paths, which keeps weights near one.
+    std::stable_sort(grid.spare.begin(), grid.spare.end(),
+                     [&](int a, int b) { return std::abs(a - lambda_ex_nm) < std::abs(b - lambda_ex_nm); });
+    return grid;
+}
+
+// From a hundredth of a mean free path to twenty diffusion lengths, but no more than 1000 mean free paths.
+std::vector<double> HalfSpaceProbe::Bench::bin_edges(const ProbeGrid& grid) const {
+    double first = 0.01, last = 10.0;  // paper: what its tables cover
+    if (material.medium && settings.transport != Transport::paper) {
+        const auto sigma_t = [&](int lambda) {
+            return material.medium->sigma_s.at(lambda) + material.medium->sigma_a.at(lambda);
+        };
+        std::vector<int> seen = grid.emitting;
+        seen.push_back(grid.lambda_ex_nm);
+        first = 0.01 / sigma_t(grid.lambda_ex_nm);
+        last = 0.0;
+        for (const int lambda : seen) {
+            const double decay =
+                diffusion_decay(std::min(material.medium->sigma_s.at(lambda) / sigma_t(lambda), 1.0));
+            last = std::max(last, std::min(1000.0, 20.0 / decay) / sigma_t(lambda));
+        }
+    }
+    last = settings.r_max_mm.value_or(last);
+    first = std::min(first, 1e-3 * last);
+    std::vector<double> edges{0.0};
+    for (int i = 0; i < settings.bins; ++i)
+        edges.push_back(first * std::pow(last / first, double(i) / double(settings.bins - 1)));
+    edges.back() = last;
+    return edges;
+}
+
+// Adds what the maps hold to a batch's sums. Elastic light is in every one of the sets, of which it is the
+// mean.
+void HalfSpaceProbe::Bench::add_set(const ProbeSet& set, const ProbeResult& result, const Layout& layout,
+                                    std::size_t sets, std::vector<double>& sums) const {
+    constexpr std::array<std::size_t, 3> component_of = {probe_fluorescence, probe_single, probe_multiple};
+    const auto ex = static_cast<std::size_t>(
+        std::lower_bound(result.lambda_nm.begin(), result.lambda_nm.end(), result.lambda_ex_nm) -
+        result.lambda_nm.begin());
+    for (std::size_t m = 0; m < component_of.size(); ++m) {
+        const std::size_t component = component_of[m];
+        const std::vector<PhotonHead> heads = maps[m].heads().download(maps[m].used());
+        const std::vector<Flux16> flux = maps[m].flux().download(maps[m].used());
+        for (std::size_t i = 0; i < heads.size(); ++i) {
+            if (heads[i].normal == STOKES_EMPTY_SLOT) continue;
+            double leaving = 0.0;
+            if (component == probe_fluorescence) {
+                for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
+                    if (set.read[k] < 0) continue;
+                    const double per_nm = static_cast<double>(flux[i].v[k]) / set.wavelengths.pair_weight_nm;
+                    const double part = per_nm * settings.step_nm;
+                    sums[layout.at_wavelength(component, static_cast<std::size_t>(set.read[k]))] += per_nm;
+                    sums[layout.emitted_photons()] +=
+                        part * set.wavelengths.set[k] / static_cast<double>(result.lambda_ex_nm);
+                    leaving += part;
+                }
+            } else {
+                leaving = static_cast<double>(flux[i].v[set.excitation]) / static_cast<double>(sets);
+                sums[layout.at_wavelength(component, ex)] += leaving;
+            }
+            const double r_mm = std::hypot(static_cast<double>(heads[i].x), static_cast<double>(heads[i].z));
+            const auto above = std::upper_bound(result.r_mm.begin(), result.r_mm.end(), r_mm);
+            sums[layout.in_bin(component, static_cast<std::size_t>(above - result.r_mm.begin()) - 1)] +=
+                leaving;
+            sums[layout.total(component)] += leaving;
+        }
+    }
+}
+
+HalfSpaceProbe::HalfSpaceProbe(const Device& device, const ProbeMaterial& material,
+                               const ProbeSettings& settings) {
+    check(material, settings);
+    bench_ = std::make_unique<Bench>(device, material, settings);
+}
+
+HalfSpaceProbe::~HalfSpaceProbe() = default;
+
+const std::vector<int>& HalfSpaceProbe::grid_nm() const {
+    return bench_->grid_nm;
+}
+
+namespace {
+
+// The sum of a batch's components, and what was reflected where it arrived.
+void finish_batch(const Layout& layout, std::size_t wavelengths, std::size_t bins, std::size_t ex,
+                  double reflected, std::vector<double>& sums) {
+    sums[layout.at_wavelength(probe_specular, ex)] = sums[layout.total(probe_specular)] = reflected;
+    for (std::size_t component = 0; component < probe_total; ++component) {
+        for (std::size_t i = 0; i < wavelengths; ++i)
+            sums[layout.at_wavelength(probe_total, i)] += sums[layout.at_wavelength(component, i)];
+        for (std::size_t bin = 0; bin <= bins; ++bin)
+            sums[layout.in_bin(probe_total, bin)] += sums[layout.in_bin(component, bin)];
+        sums[layout.total(probe_total)] += sums[layout.total(component)];
+    }
+}
+
+void read_means(const Layout& layout, const BatchMeans& means, ProbeResult& result) {
+    const std::size_t bins = result.r_mm.size() - 1;
+    for (std::size_t component = 0; component < probe_component_count; ++component) {
+        for (std::size_t i = 0; i < result.lambda_nm.size(); ++i)
+            result.reflectance[component].push_back(means.at(layout.at_wavelength(component, i)));
+        for (std::size_t bin = 0; bin < bins; ++bin) {
+            const double inner = result.r_mm[bin], outer = result.r_mm[bin + 1];
+            const double area_mm2 = M_PI * (outer - inner) * (outer + inner);
+            const Measured share = means.at(layout.in_bin(component, bin));
+            result.radial[component].push_back({share.value / area_mm2, share.standard_error / area_mm2});
+        }
+        result.beyond[component] = means.at(layout.in_bin(component, bins));
+        result.totals[component] = means.at(layout.total(component));
+    }
+    result.emitted_photons = means.at(layout.emitted_photons());
+}
+
+}  // namespace
+
+ProbeResult HalfSpaceProbe::measure(int lambda_ex_nm) {
+    Bench& b = *bench_;
+    if (lambda_ex_nm < first_probe_lambda_nm || lambda_ex_nm > last_probe_lambda_nm)
+        throw InputError(fmt::format("probe: expected an excitation wavelength in [{}, {}] nm, got {}",
+                                     first_probe_lambda_nm, last_probe_lambda_nm, lambda_ex_nm));
+    b.scene.lights[0].flux = line_of(lambda_ex_nm);
+    const ProbeGrid grid = b.probe_grid(lambda_ex_nm);
+    ProbeResult result;
+    result.lambda_ex_nm = lambda_ex_nm;
+    result.lambda_nm = grid.lambda_nm;
+    result.r_mm = b.bin_edges(grid);
+    result.photons = b.batches * b.photons;
+    result.sets = probe_set_count(grid);
+    result.batches = static_cast<std::size_t>(b.batches);
+
+    const std::size_t bins = result.r_mm.size() - 1;
+    const Layout layout(grid.lambda_nm.size(), bins);
+    BatchMeans means(layout.size());
+    const auto ex = static_cast<std::size_t>(
+        std::lower_bound(grid.lambda_nm.begin(), grid.lambda_nm.end(), lambda_ex_nm) -
+        grid.lambda_nm.begin());
+    double dropped = 0.0, arrived = 0.0;
+    std::uint32_t index = 0;
+    for (std::int64_t batch = 0; batch < b.batches; ++batch) {
+        std::vector<double> sums(layout.size(), 0.0);
+        double reflections = 0.0;
+        const auto sets = probe_sets(grid, b.settings.seed, static_cast<std::uint32_t>(batch));
+        for (const ProbeSet& set : sets) {
+            b.pass.make(set.wavelengths, index++, b.photons);
+            for (PhotonMap& map : b.maps) map.clear();
+            const PhotonAccount account = b.tracer.trace(b.on_device, b.pass.buffers(), b.photons, b.maps);
+            reflections += static_cast<double>(account.reflections);
+            arrived += account.energy[0];
+            dropped += account.energy[4];
+            b.add_set(set, result, layout, sets.size(), sums);
+        }
+        finish_batch(layout, grid.lambda_nm.size(), bins, ex,
+                     reflections / (static_cast<double>(sets.size()) * b.photons), sums);
+        means.add(sums);
+    }
+    result.dropped = dropped / arrived;
+    read_means(layout, means, result);
+    return result;
+}
+
+}  // namespace stokes
