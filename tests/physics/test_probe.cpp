@@ -58,10 +58,14 @@ ProbeSettings settings_of(Transport transport, double angle_deg, std::int64_t ph
     return settings;
 }
 
-void check_near(const Measured& measured, double expected, double tolerance = 0.0) {
+// Standard errors that a comparison may differ by: where few are made, and where some 300 are, which at this many all
+// hold but once in 100 choices of the seed (Student's distribution of 63 degrees of freedom).
+constexpr double among_few = 3.0, among_many = 4.5;
+
+void check_near(const Measured& measured, double expected, double tolerance = 0.0, double errors = among_few) {
     CAPTURE(measured.value, measured.standard_error, expected);
     CHECK(measured.standard_error < 5e-4);
-    CHECK(std::abs(measured.value - expected) <= 3.0 * measured.standard_error + tolerance);
+    CHECK(std::abs(measured.value - expected) <= errors * measured.standard_error + tolerance);
 }
 
 double cosine_of(double angle_deg) {
@@ -89,17 +93,17 @@ struct Case {
 // scatters.
 constexpr double table_tolerance = 2e-5;
 
-void check_elastic(Transport transport, const std::vector<Case>& cases) {
+void check_elastic(Transport transport, const std::vector<Case>& cases, double errors = among_few) {
     for (const Case& c : cases) {
         CAPTURE(transport_words[static_cast<std::size_t>(transport)], c.albedo, c.angle_deg, c.eta);
         const ProbeResult result =
             measured(medium_of(2.0, c.albedo, c.eta), settings_of(transport, c.angle_deg, c.photons));
         const Exact exact = exact_elastic(c.albedo, c.angle_deg, c.eta);
-        check_near(result.totals[probe_specular], exact.specular);
-        check_near(result.totals[probe_single], exact.single);
+        check_near(result.totals[probe_specular], exact.specular, 0.0, errors);
+        check_near(result.totals[probe_single], exact.single, 0.0, errors);
         check_near(result.totals[probe_multiple], exact.total - exact.single,
-                   transport == Transport::conserving ? table_tolerance : 0.0);
-        check_near(result.totals[probe_total], exact.specular + exact.total);
+                   transport == Transport::conserving ? table_tolerance : 0.0, errors);
+        check_near(result.totals[probe_total], exact.specular + exact.total, 0.0, errors);
         CHECK(result.totals[probe_fluorescence].value == 0.0);
         CHECK(result.dropped < 1e-4);
     }
@@ -116,7 +120,7 @@ ProbeMaterial dyed_medium(double albedo, double eta) {
     return material;
 }
 
-void check_fluorescence(Transport transport, const std::vector<Case>& cases) {
+void check_fluorescence(Transport transport, const std::vector<Case>& cases, double errors = among_few) {
     for (const Case& c : cases) {
         CAPTURE(transport_words[static_cast<std::size_t>(transport)], c.albedo, c.angle_deg, c.eta);
         const ProbeMaterial material = dyed_medium(c.albedo, c.eta);
@@ -128,7 +132,7 @@ void check_fluorescence(Transport transport, const std::vector<Case>& cases) {
         const double taken_up = material.fluorescent_fraction * dot.excitation.at(365);
         const double photons = (1.0 - elastic.specular) * taken_up * dot.quantum_yield * escaping;
         const double emission = dot.emission.sum_1nm(300, 830);
-        check_near(result.emitted_photons, photons);
+        check_near(result.emitted_photons, photons, 0.0, errors);
         double energy = 0.0;
         for (std::size_t i = 0; i < result.lambda_nm.size(); ++i) {
             const int lambda = result.lambda_nm[i];
@@ -136,12 +140,12 @@ void check_fluorescence(Transport transport, const std::vector<Case>& cases) {
             energy += 5.0 * expected;
             const Measured& m = result.reflectance[probe_fluorescence][i];
             CAPTURE(lambda, m.value, m.standard_error, expected);
-            CHECK(std::abs(m.value - expected) <= 4.0 * m.standard_error);
+            CHECK(std::abs(m.value - expected) <= (errors + 1.0) * m.standard_error);
             CHECK(m.standard_error <= 0.01 * expected);
         }
-        check_near(result.totals[probe_fluorescence], energy);
-        check_near(result.totals[probe_single], (1.0 - taken_up) * elastic.single);
-        check_near(result.totals[probe_multiple], (1.0 - taken_up) * (elastic.total - elastic.single));
+        check_near(result.totals[probe_fluorescence], energy, 0.0, errors);
+        check_near(result.totals[probe_single], (1.0 - taken_up) * elastic.single, 0.0, errors);
+        check_near(result.totals[probe_multiple], (1.0 - taken_up) * (elastic.total - elastic.single), 0.0, errors);
         CHECK(result.dropped < 1e-4);
     }
 }
@@ -201,9 +205,9 @@ TEST_CASE("the probe agrees with exact transport, many cases", "[.long]") {
     for (const double albedo : {0.3, 0.9, 0.998, 1.0})
         for (const double angle_deg : {0.0, 80.0})
             for (const double eta : {1.0, 1.33, 1.5}) cases.push_back({albedo, angle_deg, eta, 1600000});
-    check_elastic(Transport::walk, cases);
+    check_elastic(Transport::walk, cases, among_many);
     for (Case& c : cases) c.photons = 800000;
-    check_elastic(Transport::conserving, cases);
+    check_elastic(Transport::conserving, cases, among_many);
 }
 
 TEST_CASE("the probe measures the fluorescence of exact transport, many cases", "[.long]") {
@@ -211,9 +215,9 @@ TEST_CASE("the probe measures the fluorescence of exact transport, many cases", 
     for (const double albedo : {0.0, 0.9, 0.99})
         for (const double angle_deg : {0.0, 60.0})
             for (const double eta : {1.0, 1.5}) cases.push_back({albedo, angle_deg, eta, 700000});
-    check_fluorescence(Transport::walk, cases);
+    check_fluorescence(Transport::walk, cases, among_many);
     for (Case& c : cases) c.photons = 2000000;
-    check_fluorescence(Transport::conserving, cases);
+    check_fluorescence(Transport::conserving, cases, among_many);
 }
 
 namespace {
