@@ -24,7 +24,8 @@ TableShape green_medium_shape(const GreenTable& table, double sigma_t_min, doubl
 // What a pass reads. A medium's entries start at its shape's offset, its rows at first_row.
 struct GreenPassTables {
     Buffer<Flux16> table16;         // [row][r]: H1 [1/mm]; its trapezoid integral over r is u1 of the row
-    Buffer<Flux16> u1;              // [row]: probability of leaving scattered
+    Buffer<Flux16> u1;              // [row]: probability of leaving scattered, so that straight lines
+                                    // between rows hold what they should
     Buffer<float> mean_rows;        // [row][r]: mean over the wavelengths of H1/u1 [1/mm]
     Buffer<float> cumulative_rows;  // [row][r]: its integral, not normalised
 };
@@ -40,6 +41,7 @@ class GreenResampler {
                   const Sixteen& albedo, const GreenPassTables& tables);
 
   private:
+    std::vector<Flux16> exact_totals(const TableShape& shape, const Sixteen& sigma_t, const Sixteen& albedo) const;
     GreenShape universal_{};
     std::vector<double> root_;  // sqrt(1 - a) of the albedos
     GreenTotals totals_;

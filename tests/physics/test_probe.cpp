@@ -196,7 +196,7 @@ TEST_CASE("the probe agrees with exact transport", "[probe]") {
 }
 
 TEST_CASE("the probe measures the fluorescence of exact transport", "[probe]") {
-    check_fluorescence(Transport::conserving, {{0.2, 0.0, 1.0, 320000}, {0.8, 60.0, 1.5, 120000}});
+    check_fluorescence(Transport::conserving, {{0.2, 0.0, 1.0, 450000}, {0.8, 60.0, 1.5, 120000}});
     check_fluorescence(Transport::walk, {{0.9, 45.0, 1.33, 300000}});
 }
 
@@ -373,7 +373,7 @@ TEST_CASE("surface fluorescence leaves at the beam", "[probe]") {
 // The half-space has no length but the mean free path.
 TEST_CASE("the probe does not depend on the unit of length", "[probe]") {
     for (const Transport transport : {Transport::conserving, Transport::walk}) {
-        ProbeSettings settings = settings_of(transport, 85.0, 20000);
+        ProbeSettings settings = settings_of(transport, 85.0, 8000);
         settings.bins = 8;
         const ProbeResult middle = measured(medium_of(1.0, 0.9), settings);
         for (const double scale : {0x1p-24, 0x1p24}) {
