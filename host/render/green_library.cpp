@@ -63,6 +63,8 @@ GreenTable green_table_for(const Device& device, double eta, const GreenProgress
     const fs::path folder = cache_folder(), file = folder / table_name(eta);
     GreenTable table;
     if (!folder.empty() && read_cached(file, eta, table)) return table;
+    warn(fmt::format("no Green's function table for the refractive index {} yet: computing it, which takes a minute or two{}",
+                     eta, folder.empty() ? "" : ", once: it is kept in " + folder.string()));
     table = make_green_table(device, eta, kCachedWalks, progress);
     if (!folder.empty()) write_cached(table, file);
     return table;
