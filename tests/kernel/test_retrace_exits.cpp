@@ -194,6 +194,6 @@ TEST_CASE("light that leaves through a reflecting surface is weighted by its tra
         weight.add(seen);
         if (mu > 0.02) REQUIRE(seen == Approx(expected).epsilon(2e-4));
     }
-    CHECK(weight.count() > 0.999 * paths);
+    CHECK(double(weight.count()) > 0.999 * paths);
     CHECK(std::abs(weight.z(1.0)) < 4.0);
 }
