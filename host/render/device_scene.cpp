@@ -221,9 +221,9 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
         shape_records.push_back({static_cast<std::uint32_t>(shape.material),
                                  shape.light < 0 ? STOKES_NONE : static_cast<std::uint32_t>(shape.light)});
     }
-    const Bvh bvh = build_bvh(all);
+    const Bvh bvh = build_bvh(all, {16, BvhBounds::counts});
     grid = bvh.grid;
-    nodes = Buffer<BvhNode>(device, "bounding volumes", bvh.nodes);
+    nodes = Buffer<std::uint32_t>(device, "bounding volumes", bvh.nodes);
     blocks = Buffer<BvhBlock>(device, "triangle blocks", bvh.blocks);
     triangles = Buffer<Triangle>(device, "triangles", all);
     shapes = Buffer<ShapeRecord>(device, "shapes", shape_records);

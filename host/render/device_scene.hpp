@@ -48,7 +48,7 @@ struct DeviceScene {
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
     Buffer<std::uint32_t> bodies;  // STOKES_BODY_*, by body; one entry where the transport does not ask
-    Buffer<BvhNode> nodes;
+    Buffer<std::uint32_t> nodes;  // of 16 children, bounds as counts
     Buffer<BvhBlock> blocks;
     BvhGrid grid{};
     Buffer<LightRecord> lights;

@@ -8,8 +8,7 @@ namespace stokes {
 
 namespace {
 
-constexpr int width = STOKES_BVH_WIDTH;
-constexpr float node_cost = 1.0f;   // test of sixteen boxes
+constexpr float node_cost = 1.0f;   // test of a node's boxes
 constexpr float block_cost = 1.0f;  // test of eight triangles
 constexpr std::uint32_t fork_from = 4096;
 
@@ -25,7 +24,7 @@ std::pair<float, std::uint8_t> best_distribution(const BvhTree& tree, int count)
 
 // The optimal collapse of a binary tree by dynamic programming: Ylitie, Karras and Laine 2017, "Efficient
 // incoherent ray traversal on GPUs through compressed wide BVHs", section 3.
-void choose_forests(BvhTree& tree) {
+void choose_forests(BvhTree& tree, int width) {
     const auto area = static_cast<float>(tree.range.box.half_area());
     if (tree.leaf()) {
         tree.forest_cost.fill(area * block_cost);
@@ -44,6 +43,7 @@ void choose_forests(BvhTree& tree) {
 
 struct TreeBuilder {
     std::vector<BvhRef>& refs;
+    int width;
     int area_levels;
     int fork_levels;
 
@@ -62,7 +62,7 @@ struct TreeBuilder {
                 tree->right = build(r, level + 1);
             }
         }
-        choose_forests(*tree);
+        choose_forests(*tree, width);
         return tree;
     }
 };
@@ -79,14 +79,14 @@ void collect(const BvhTree& tree, int count, std::vector<const BvhTree*>& childr
 
 }  // namespace
 
-std::unique_ptr<BvhTree> build_tree(std::vector<BvhRef>& refs, const BvhRange& range, int area_levels,
+std::unique_ptr<BvhTree> build_tree(std::vector<BvhRef>& refs, const BvhRange& range, int width, int area_levels,
                                     unsigned threads) {
     int fork_levels = 0;
     while (threads > 1 && fork_levels < 8 && (1u << fork_levels) < 4 * threads) ++fork_levels;
-    return TreeBuilder{refs, area_levels, fork_levels}.build(range, 0);
+    return TreeBuilder{refs, width, area_levels, fork_levels}.build(range, 0);
 }
 
-std::vector<const BvhTree*> wide_children(const BvhTree& tree) {
+std::vector<const BvhTree*> wide_children(const BvhTree& tree, int width) {
     std::vector<const BvhTree*> children;
     collect(tree, width, children);
     std::stable_sort(children.begin(), children.end(), [](const BvhTree* a, const BvhTree* b) {
@@ -95,10 +95,10 @@ std::vector<const BvhTree*> wide_children(const BvhTree& tree) {
     return children;
 }
 
-int wide_levels(const BvhTree& tree) {
+int wide_levels(const BvhTree& tree, int width) {
     if (tree.leaf()) return 0;
     int below = 0;
-    for (const BvhTree* child : wide_children(tree)) below = std::max(below, wide_levels(*child));
+    for (const BvhTree* child : wide_children(tree, width)) below = std::max(below, wide_levels(*child, width));
     return below + 1;
 }
 

@@ -106,10 +106,10 @@ Json grow_triangles(Setting& setting) {
     for (double wanted = 1e4; wanted <= last * 1.001; wanted *= 10.0) {
         const std::vector<Triangle> triangles = sphere_hall(static_cast<std::size_t>(wanted));
         Bvh bvh;
-        const Timing build = time_of([&] { bvh = build_bvh(triangles, setting.threads); });
+        const Timing build = time_of([&] { bvh = build_bvh(triangles, {16, BvhBounds::counts}, setting.threads); });
         const double bytes =
-            static_cast<double>(bvh.nodes.size() * sizeof(BvhNode) + bvh.blocks.size() * sizeof(BvhBlock));
-        const Buffer<BvhNode> nodes(setting.device, "nodes", bvh.nodes);
+            static_cast<double>(bvh.nodes.size() * 4 + bvh.blocks.size() * sizeof(BvhBlock));
+        const Buffer<std::uint32_t> nodes(setting.device, "nodes", bvh.nodes);
         const Buffer<BvhBlock> blocks(setting.device, "blocks", bvh.blocks);
         const auto n = setting.pick(1000u, 200000u, 500000u);
         std::vector<Ray> rays(n);

@@ -149,7 +149,7 @@ struct Caster {
 };
 
 struct OnDevice {
-    Buffer<BvhNode> nodes;
+    Buffer<std::uint32_t> nodes;
     Buffer<BvhBlock> blocks;
     BvhGrid grid;
 };
@@ -198,14 +198,14 @@ class RayBench {
     Json run(const Casting& casting) {
         OnDevice scene;
         Bvh bvh;
-        const double build_s = time_of([&] { bvh = build_bvh(casting.triangles, setting_.threads); }).wall_s;
-        scene.nodes = Buffer<BvhNode>(setting_.device, "nodes", bvh.nodes);
+        const double build_s = time_of([&] { bvh = build_bvh(casting.triangles, {16, BvhBounds::counts}, setting_.threads); }).wall_s;
+        scene.nodes = Buffer<std::uint32_t>(setting_.device, "nodes", bvh.nodes);
         scene.blocks = Buffer<BvhBlock>(setting_.device, "blocks", bvh.blocks);
         scene.grid = bvh.grid;
         const Others others(casting.triangles, setting_.threads);
         Json json{{"triangles", casting.triangles.size()},
                   {"build_s", build_s},
-                  {"bvh_bytes", bvh.nodes.size() * sizeof(BvhNode) + bvh.blocks.size() * sizeof(BvhBlock)}};
+                  {"bvh_bytes", bvh.nodes.size() * 4 + bvh.blocks.size() * sizeof(BvhBlock)}};
 #ifdef STOKES_WITH_EMBREE
         json["embree_build_s"] = others.fast.build_wall_s();
 #endif

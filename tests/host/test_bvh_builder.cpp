@@ -19,9 +19,30 @@ struct Bounds {
     double lo[3], hi[3];  // counts
 };
 
-Bounds child_bounds(const BvhNode& n, int i) {
-    return {{double(n.lo_x[i]), double(n.lo_y[i]), double(n.lo_z[i])},
-            {double(n.hi_x[i]), double(n.hi_y[i]), double(n.hi_z[i])}};
+// A node as any layout keeps it.
+struct WideNode {
+    Bounds bounds[16];
+    std::uint32_t child[16];
+};
+
+template <class Node>
+WideNode read_as(const Bvh& bvh, std::uint32_t index) {
+    Node n;
+    REQUIRE((index + 1) * sizeof n <= bvh.nodes.size() * 4);
+    std::memcpy(&n, bvh.nodes.data() + index * sizeof n / 4, sizeof n);
+    WideNode wide{};
+    for (int i = 0; i < bvh.layout.width; ++i) {
+        wide.bounds[i] = {{double(n.lo_x[i]), double(n.lo_y[i]), double(n.lo_z[i])},
+                          {double(n.hi_x[i]), double(n.hi_y[i]), double(n.hi_z[i])}};
+        wide.child[i] = n.child[i];
+    }
+    return wide;
+}
+
+WideNode read_node(const Bvh& bvh, std::uint32_t index) {
+    const bool floats = bvh.layout.bounds == BvhBounds::floats;
+    if (bvh.layout.width == 8) return floats ? read_as<BvhNode8f>(bvh, index) : read_as<BvhNode8>(bvh, index);
+    return floats ? read_as<BvhNode16f>(bvh, index) : read_as<BvhNode16>(bvh, index);
 }
 
 // Walks the whole hierarchy and counts what is wrong.
@@ -39,10 +60,10 @@ struct Inspection {
             return;
         }
         seen_nodes.insert(child);
-        const BvhNode& node = bvh.nodes.at(child);
+        const WideNode node = read_node(bvh, child);
         double last_area = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < STOKES_BVH_WIDTH; ++i) {
-            const Bounds b = child_bounds(node, i);
+        for (int i = 0; i < bvh.layout.width; ++i) {
+            const Bounds& b = node.bounds[i];
             if (b.lo[0] > b.hi[0]) {
                 for (int a = 0; a < 3; ++a) bad_empty += !(b.lo[a] > b.hi[a]);
                 bad_empty += node.child[i] != STOKES_BVH_LEAF;  // the first block, safe to visit
@@ -106,8 +127,12 @@ Inspection inspect(const Bvh& bvh, const std::vector<Triangle>& triangles) {
     return result;
 }
 
-void check_invariants(const std::vector<Triangle>& triangles) {
-    const Bvh bvh = build_bvh(triangles);
+constexpr BvhLayout layouts[]{
+    {16, BvhBounds::counts}, {16, BvhBounds::floats}, {8, BvhBounds::counts}, {8, BvhBounds::floats}};
+
+void check_layout(const std::vector<Triangle>& triangles, const BvhLayout& layout) {
+    CAPTURE(layout.width, layout.bounds == BvhBounds::floats);
+    const Bvh bvh = build_bvh(triangles, layout);
     const Inspection found = inspect(bvh, triangles);
     CHECK(found.outside_parent == 0);
     CHECK(found.corner_outside == 0);
@@ -118,15 +143,18 @@ void check_invariants(const std::vector<Triangle>& triangles) {
     CHECK(found.seen_triangles.size() == triangles.size());
     CHECK(std::set<std::uint32_t>(found.seen_triangles.begin(), found.seen_triangles.end()).size() ==
           triangles.size());
-    CHECK(found.seen_nodes.size() == bvh.nodes.size());
+    CHECK(found.seen_nodes.size() == bvh.node_count);
     for (const float scale : {bvh.grid.scale_x, bvh.grid.scale_y, bvh.grid.scale_z})
         CHECK((scale > 0.0f && scale < std::numeric_limits<float>::infinity()));
 }
 
+void check_invariants(const std::vector<Triangle>& triangles) {
+    for (const BvhLayout& layout : layouts) check_layout(triangles, layout);
+}
+
 bool same_bytes(const Bvh& a, const Bvh& b) {
-    return a.nodes.size() == b.nodes.size() && a.blocks.size() == b.blocks.size() &&
+    return a.nodes == b.nodes && a.node_count == b.node_count && a.blocks.size() == b.blocks.size() &&
            std::memcmp(&a.grid, &b.grid, sizeof a.grid) == 0 &&
-           std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BvhNode)) == 0 &&
            std::memcmp(a.blocks.data(), b.blocks.data(), a.blocks.size() * sizeof(BvhBlock)) == 0;
 }
 
@@ -148,7 +176,7 @@ TEST_CASE("up to eight triangles are one block without a node") {
         CHECK(bvh.blocks.size() == 1);
         check_invariants(triangles);
     }
-    CHECK(build_bvh(triangle_soup(9, 1.0f, glm::vec3(1.0f), 1)).nodes.size() == 1);
+    CHECK(build_bvh(triangle_soup(9, 1.0f, glm::vec3(1.0f), 1)).node_count == 1);
 }
 
 TEST_CASE("every corner lies in all boxes above it, every triangle in one block") {
@@ -184,9 +212,9 @@ TEST_CASE("triangles that coincide and sizes that fall geometrically keep the de
 
 TEST_CASE("the hierarchy is the same bits for any number of threads") {
     const auto triangles = sphere_mesh(150, 300, 10.0f, glm::vec3(0.0f));
-    const Bvh one = build_bvh(triangles, 1);
-    CHECK(same_bytes(one, build_bvh(triangles, 2)));
-    CHECK(same_bytes(one, build_bvh(triangles, 7)));
+    const Bvh one = build_bvh(triangles, {}, 1);
+    CHECK(same_bytes(one, build_bvh(triangles, {}, 2)));
+    CHECK(same_bytes(one, build_bvh(triangles, {}, 7)));
     CHECK(same_bytes(one, build_bvh(triangles)));
 }
 
@@ -194,7 +222,7 @@ TEST_CASE("blocks and nodes are well filled on a smooth mesh") {
     const auto triangles = sphere_mesh(150, 300, 10.0f, glm::vec3(0.0f));
     const Bvh bvh = build_bvh(triangles);
     CHECK(static_cast<double>(triangles.size()) / static_cast<double>(bvh.blocks.size()) > 6.5);
-    CHECK(static_cast<double>(bvh.blocks.size() + bvh.nodes.size()) / static_cast<double>(bvh.nodes.size()) >
+    CHECK(static_cast<double>(bvh.blocks.size() + bvh.node_count) / static_cast<double>(bvh.node_count) >
           8.0);
 }
 

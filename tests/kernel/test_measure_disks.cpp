@@ -33,7 +33,7 @@ GatherPoint point_at(double x, double y, double z) {
 // Weights of count pixels that all see the same point of the mesh, its normal +y.
 Sample weights(const Mesh& mesh, GatherPoint point, std::uint32_t count, float radius_mm) {
     const std::vector<Triangle> triangles = triangles_of(mesh);
-    const Bvh bvh = build_bvh(triangles);
+    const Bvh bvh = build_bvh(triangles, {16, BvhBounds::counts});
     std::vector<GatherPoint> given;
     for (std::uint32_t pixel = 0; pixel < count; ++pixel) {
         point.pixel = pixel;

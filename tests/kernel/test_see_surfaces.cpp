@@ -61,7 +61,7 @@ class Bench {
         materials[clear].exit_scale = 1.0f;
         Flux16 light{};
         light.v[0] = 3.0f;
-        bvh_ = build_bvh(triangles_);
+        bvh_ = build_bvh(triangles_, {16, BvhBounds::counts});
         const Device& device = test_device();
         nodes_ = {device, "nodes", bvh_.nodes};
         blocks_ = {device, "blocks", bvh_.blocks};
@@ -109,7 +109,7 @@ class Bench {
   private:
     std::vector<Triangle> triangles_;
     Bvh bvh_;
-    Buffer<BvhNode> nodes_;
+    Buffer<std::uint32_t> nodes_;
     Buffer<BvhBlock> blocks_;
     GatherScene scene_;
 };

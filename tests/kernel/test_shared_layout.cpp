@@ -24,8 +24,14 @@ using namespace stokes;
 // Every struct of kernels/shared with every field: S(struct) opens one, F(struct, field) follows.
 // clang-format off
 #define SHARED_STRUCTS(S, F) \
-    S(BvhNode) F(BvhNode, lo_x) F(BvhNode, lo_y) F(BvhNode, lo_z) F(BvhNode, hi_x) F(BvhNode, hi_y) \
-        F(BvhNode, hi_z) F(BvhNode, child) \
+    S(BvhNode16) F(BvhNode16, lo_x) F(BvhNode16, lo_y) F(BvhNode16, lo_z) F(BvhNode16, hi_x) F(BvhNode16, hi_y) \
+        F(BvhNode16, hi_z) F(BvhNode16, child) \
+    S(BvhNode16f) F(BvhNode16f, lo_x) F(BvhNode16f, lo_y) F(BvhNode16f, lo_z) F(BvhNode16f, hi_x) F(BvhNode16f, hi_y) \
+        F(BvhNode16f, hi_z) F(BvhNode16f, child) \
+    S(BvhNode8) F(BvhNode8, lo_x) F(BvhNode8, lo_y) F(BvhNode8, lo_z) F(BvhNode8, hi_x) F(BvhNode8, hi_y) \
+        F(BvhNode8, hi_z) F(BvhNode8, child) \
+    S(BvhNode8f) F(BvhNode8f, lo_x) F(BvhNode8f, lo_y) F(BvhNode8f, lo_z) F(BvhNode8f, hi_x) F(BvhNode8f, hi_y) \
+        F(BvhNode8f, hi_z) F(BvhNode8f, child) \
     S(BvhBlock) F(BvhBlock, v0x) F(BvhBlock, v0y) F(BvhBlock, v0z) F(BvhBlock, v1x) F(BvhBlock, v1y) \
         F(BvhBlock, v1z) F(BvhBlock, v2x) F(BvhBlock, v2y) F(BvhBlock, v2z) F(BvhBlock, triangle) \
     S(BvhGrid) F(BvhGrid, origin_x) F(BvhGrid, origin_y) F(BvhGrid, origin_z) F(BvhGrid, scale_x) \

@@ -25,12 +25,18 @@ inline glm::dvec3 e2_of(const Triangle& t) {
     return {t.e2x, t.e2y, t.e2z};
 }
 
+inline std::vector<std::string> with_layout(std::vector<std::string> options, const BvhLayout& layout) {
+    for (const std::string& option : bvh_kernel_options(layout)) options.push_back(option);
+    return options;
+}
+
 // The scene on the device, with its kernels.
 struct Traced {
-    explicit Traced(const std::vector<Triangle>& scene, const std::vector<std::string>& options = {})
+    explicit Traced(const std::vector<Triangle>& scene, const std::vector<std::string>& options = {},
+                    const BvhLayout& layout = {16, BvhBounds::counts})
         : triangles(scene),
-          bvh(build_bvh(scene)),
-          program(test_device(), "trace_rays.cl", options),
+          bvh(build_bvh(scene, layout)),
+          program(test_device(), "trace_rays.cl", with_layout(options, bvh.layout)),
           nodes(test_device(), "nodes", bvh.nodes),
           blocks(test_device(), "blocks", bvh.blocks),
           triangle_buffer(test_device(), "triangles", scene) {}
@@ -60,7 +66,7 @@ struct Traced {
     std::vector<Triangle> triangles;
     Bvh bvh;
     Program program;
-    Buffer<BvhNode> nodes;
+    Buffer<std::uint32_t> nodes;
     Buffer<BvhBlock> blocks;
     Buffer<Triangle> triangle_buffer;
 };
