@@ -19,7 +19,7 @@
 // transmittance, exit_scale is left to collect_points.
 // Reads: the scene, pass (seed, pass, offset_mm). Reads and writes rays[width * height]: of a mirrored ray the last
 // segment is left, which starts offset_mm above the surface.
-// Writes hits[width * height]: the nearest intersection along those, STOKES_NONE without one and after
+// Reads and writes hits[width * height]: the nearest intersection along those, STOKES_NONE without one and after
 // MOST_REFLECTIONS.
 __kernel void trace_seen(CameraRecord camera, __global const PassConstants* pass, __global const BvhNode* nodes,
                          __global const BvhBlock* blocks, BvhGrid grid, __global const Triangle* triangles,
@@ -32,9 +32,9 @@ __kernel void trace_seen(CameraRecord camera, __global const PassConstants* pass
     const BvhScene scene = {nodes, blocks, grid};
     const BvhFilter all = {BVH_BOTH, 0u, 0};
     Ray ray = rays[i];
-    Hit hit;
+    Hit hit = hits[i];
     for (uint reflections = 0u;; ++reflections) {
-        hit = bvh_closest(scene, ray, all);
+        if (reflections > 0u) hit = bvh_closest(scene, ray, all);
         if (hit.triangle == STOKES_NONE) break;
         const Triangle t = triangles[hit.triangle];
         const MaterialRecord material = materials[shapes[t.shape].material];

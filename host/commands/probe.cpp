@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/commands/commands.hpp"
+#include "host/commands/device_flags.hpp"
 #include "host/commands/material_flags.hpp"
 #include "host/commands/number_in.hpp"
 #include "host/commands/outputs.hpp"
@@ -24,8 +25,9 @@ namespace stokes {
 namespace {
 
 struct ProbeOptions {
-    std::string scene_file, material, model, json_file, matrix_file, device;
-    int lambda_nm = 365, lambda_min_nm = 0, lambda_max_nm = 0, threads = 0;
+    std::string scene_file, material, model, json_file, matrix_file;
+    DeviceFlags device;
+    int lambda_nm = 365, lambda_min_nm = 0, lambda_max_nm = 0;
     double r_max_mm = 0.0;
     MaterialFlags flags;
     ProbeSettings settings;
@@ -92,7 +94,7 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
     const ProbeSettings settings = settings_of(command, options, render);
     if (material.fresnel && settings.transport == Transport::paper)
         warn("the model paper leaves out Fresnel reflection");
-    const Device device = Device::open(options.device, options.threads);
+    const Device device = open_device(options.device);
     HalfSpaceProbe probe(device, material, settings);
     const ProbeResult result = probe.measure(options.lambda_nm);
     warn_of_drops(result);
@@ -160,9 +162,7 @@ void add_probe_command(CLI::App& app) {
         ->add_option("--matrix", options->matrix_file,
                      "Sweep the beam's wavelength too, and write the effective re-radiation matrix")
         ->type_name("FILE.csv");
-    command->add_option("--device", options->device, "platform:device, part of a name, cpu or gpu");
-    command->add_option("--threads", options->threads, "CPU threads; default: all")
-        ->check(CLI::Range(1, 4096));
+    add_device_flags(*command, options->device);
     command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
     command->callback([command, options] { run_probe(*command, *options); });
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "host/commands/commands.hpp"
+#include "host/commands/device_flags.hpp"
 #include "host/commands/number_in.hpp"
 #include "host/commands/outputs.hpp"
 #include "host/commands/progress.hpp"
@@ -31,8 +32,9 @@ extern "C" void catch_signal(int signal) {
 }
 
 struct RenderOptions {
-    std::string scene_file, exr_file, png_file, stats_file, device, kernel_directory, size, transport;
-    int passes = 0, threads = 0;
+    std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
+    int passes = 0;
+    DeviceFlags device;
     std::int64_t photons = 0;
     std::uint32_t seed = 0;
     double alpha = 0.0, radius_mm = 0.0, exposure_ev = 0.0, max_memory_gib = 0.0;
@@ -84,6 +86,7 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.scene = scene.file;
     stats.device = device.description().name;
     stats.driver = device.description().platform + " " + device.description().driver;
+    stats.ray_kernel = ray_shape_words[static_cast<std::size_t>(device.ray_shape())];
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
@@ -129,8 +132,8 @@ void write_results(const RenderOptions& options, const Scene& scene, const FilmI
                   options.quiet);
 }
 
-Device open_device(const RenderOptions& options) {
-    Device device = Device::open(options.device, options.threads);
+Device open_device_for(const RenderOptions& options) {
+    Device device = open_device(options.device);
     device.set_kernel_directory(options.kernel_directory);
     if (options.max_memory_gib > 0.0)
         device.set_memory_budget(static_cast<std::uint64_t>(options.max_memory_gib * (1 << 30)));
@@ -171,7 +174,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     warn_about_assumptions(scene);
     std::signal(SIGINT, catch_signal);
     std::signal(SIGTERM, catch_signal);
-    Device device = open_device(options);
+    Device device = open_device_for(options);
     Progress progress(static_cast<std::uint32_t>(scene.render.passes), options.quiet);
     progress.preparing();
     const std::unique_ptr<Renderer> renderer = set_up(device, scene);
@@ -222,9 +225,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("--exposure", options->exposure_ev, "Exposure of the PNG; default: automatic")
         ->type_name("EV")
         ->check(number_in(-100.0, 100.0));
-    command->add_option("--device", options->device, "platform:device, part of a name, cpu or gpu");
-    command->add_option("--threads", options->threads, "CPU threads; default: all")
-        ->check(CLI::Range(1, 4096));
+    add_device_flags(*command, options->device);
     command
         ->add_option("--max-memory", options->max_memory_gib,
                      "Device memory to use at most; default: 3/4 of it")

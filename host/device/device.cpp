@@ -40,6 +40,7 @@ DeviceDescription describe(const cl::Platform& platform, const cl::Device& devic
     result.gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
     result.available = device.getInfo<CL_DEVICE_AVAILABLE>() != 0;
     result.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    result.vector_floats = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
     result.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     result.largest_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     return result;
@@ -92,6 +93,20 @@ const Found& choose(const std::vector<Found>& found, const std::string& selector
 }
 
 }  // namespace
+
+RayShape choose_ray_shape(const DeviceDescription& device, bool x86) {
+    if (!device.cpu || device.gpu || device.vector_floats < 2) return RayShape::scalar;
+    if (!x86 || device.vector_floats < 8) return RayShape::portable;
+    return device.vector_floats < 16 ? RayShape::avx2 : RayShape::avx512;
+}
+
+RayShape choose_ray_shape(const DeviceDescription& device) {
+#if defined(__x86_64__) || defined(__i386__)
+    return choose_ray_shape(device, true);
+#else
+    return choose_ray_shape(device, false);
+#endif
+}
 
 std::vector<DeviceDescription> list_devices() {
     std::vector<DeviceDescription> result;

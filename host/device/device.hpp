@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -27,8 +28,22 @@ struct DeviceDescription {
     std::string platform, name, version, driver;
     bool cpu = false, gpu = false, available = false;
     unsigned compute_units = 0;
+    unsigned vector_floats = 1;  // in one of its own vectors
     std::uint64_t memory_bytes = 0, largest_allocation_bytes = 0;
 };
+
+// How a device's kernels trace rays; every shape finds the same hits.
+// avx512, avx2, portable: a work-item tests all children of a node, or eight triangles, at once; the first two
+// take masks by the processor's own instructions. scalar: one after the other, for devices whose work-items are lanes
+// themselves.
+enum class RayShape { avx512, avx2, portable, scalar };
+// As the command line spells them, in the order of RayShape.
+inline const std::vector<std::string> ray_shape_words = {"avx512", "avx2", "portable", "scalar"};
+
+// By what the device says of itself: whether it is a CPU, and the width of its vectors. x86: whether this program runs
+// on such a processor, of which a CPU device is part.
+RayShape choose_ray_shape(const DeviceDescription& device, bool x86);
+RayShape choose_ray_shape(const DeviceDescription& device);
 
 // All OpenCL devices, in the order of platforms and devices. RunError when there is no OpenCL driver at all.
 std::vector<DeviceDescription> list_devices();
@@ -61,6 +76,10 @@ class Device {
     void set_local_size(std::size_t size) { shared_->local_size = size; }
     std::size_t local_size() const { return shared_->local_size; }
 
+    // How its ray kernels are built (host/device/ray_shape.hpp); none: as the device's description suggests.
+    void set_ray_shape(RayShape shape) { shared_->ray_shape = shape; }
+    RayShape ray_shape() const { return shared_->ray_shape.value_or(choose_ray_shape(description())); }
+
     // Measured seconds per kernel name, gathered from the driver's profile when this is called or finish()
     // was.
     const std::map<std::string, StageTime>& stage_times() const;
@@ -91,6 +110,7 @@ class Device {
         cl::CommandQueue queue;
         std::string kernel_directory;
         std::size_t local_size = 64;
+        std::optional<RayShape> ray_shape;
         std::function<bool()> stop;
         std::uint64_t memory_budget = 0, memory_in_use = 0;
         std::map<std::string, StageTime> stage_times;

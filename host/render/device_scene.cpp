@@ -8,7 +8,6 @@
 #include "host/render/green_walk.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
-#include "host/scene/bvh_builder.hpp"
 #include "host/scene/mesh_topology.hpp"
 #include "host/subsurface/distance_sampler.hpp"
 #include "host/subsurface/fresnel.hpp"
@@ -221,10 +220,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
         shape_records.push_back({static_cast<std::uint32_t>(shape.material),
                                  shape.light < 0 ? STOKES_NONE : static_cast<std::uint32_t>(shape.light)});
     }
-    const Bvh bvh = build_bvh(all, {16, BvhBounds::counts});
-    grid = bvh.grid;
-    nodes = Buffer<std::uint32_t>(device, "bounding volumes", bvh.nodes);
-    blocks = Buffer<BvhBlock>(device, "triangle blocks", bvh.blocks);
+    rays = RayScene(device, all);
     triangles = Buffer<Triangle>(device, "triangles", all);
     shapes = Buffer<ShapeRecord>(device, "shapes", shape_records);
     materials = Buffer<MaterialRecord>(device, "materials", material_records(scene));

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "host/device/device.hpp"
+#include "host/render/ray_casting.hpp"
 #include "host/scene/scene.hpp"
 #include "host/subsurface/device_table.hpp"
 #include "host/subsurface/green_table.hpp"
-#include "kernels/shared/bvh.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/power_table.h"
@@ -48,9 +48,7 @@ struct DeviceScene {
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
     Buffer<std::uint32_t> bodies;  // STOKES_BODY_*, by body; one entry where the transport does not ask
-    Buffer<std::uint32_t> nodes;  // of 16 children, bounds as counts
-    Buffer<BvhBlock> blocks;
-    BvhGrid grid{};
+    RayScene rays;
     Buffer<LightRecord> lights;
     Buffer<float> light_areas;  // cumulative area of the triangles of each surface light [mm^2]
     Transport transport = Transport::paper;

@@ -2,12 +2,12 @@
 
 namespace stokes {
 
-Gather::Gather(const Device& device, const CameraRecord& camera)
+Gather::Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera)
     : camera_(camera),
       points_(device, "points seen by the camera", std::size_t{camera.width} * camera.height) {
     const Program program(device, "gather_radiance.cl");
     collect_points_ = program.kernel("collect_points");
-    measure_disks_ = Program(device, "measure_disks.cl").kernel("measure_disks");
+    measure_disks_ = kernels.program(device, "measure_disks.cl").kernel("measure_disks");
     gather_radiance_ = program.kernel("gather_radiance");
 }
 
@@ -18,7 +18,7 @@ void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants
 }
 
 void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm) {
-    measure_disks_.launch(pixels(), pixels(), radius_mm, pass, scene.nodes, scene.blocks, scene.grid, scene.triangles,
+    measure_disks_.launch(pixels(), pixels(), radius_mm, pass, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles,
                           points_);
 }
 

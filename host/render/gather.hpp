@@ -30,7 +30,7 @@ struct GatherScene {
 // Adds a pass to the film [STOKES_MAP_COUNT][height][width].
 class Gather {
   public:
-    Gather(const Device& device, const CameraRecord& camera);
+    Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera);
 
     // Finds the points that the camera rays see, and adds the light of emitters among them to the surface layer.
     // rays, hits: one per pixel, as CameraView makes and trace_closest_all or trace_seen find them. Asynchronous.

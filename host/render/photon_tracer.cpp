@@ -17,7 +17,7 @@ std::uint32_t chunks_of(std::uint32_t count) { return (count + chunk_size - 1) /
 
 }  // namespace
 
-PhotonTracer::PhotonTracer(const Device& device, std::uint32_t paths)
+PhotonTracer::PhotonTracer(const Device& device, const RayKernels& kernels, std::uint32_t paths)
     : device_(device),
       rays_(device, "photon rays", paths),
       hits_(device, "photon hits", paths),
@@ -37,7 +37,7 @@ PhotonTracer::PhotonTracer(const Device& device, std::uint32_t paths)
       probe_hits_(device, "exit hits", std::size_t{2} * paths),
       sums_(device, "ledger sums", chunks_of(paths)) {
     emit_ = Program(device, "emit_photons.cl").kernel("emit_photons");
-    const Program tracing(device, "trace_rays.cl");
+    const Program tracing = kernels.program(device, "trace_rays.cl");
     trace_ = tracing.kernel("trace_closest");
     trace_probe_ = tracing.kernel("trace_probe");
     const Program lists(device, "classify_photons.cl");
@@ -53,7 +53,7 @@ PhotonTracer::PhotonTracer(const Device& device, std::uint32_t paths)
     retrace_fluorescence_ = subsurface.kernel("retrace_fluorescence");
     retrace_elastic_ = subsurface.kernel("retrace_elastic");
     retrace_exits_ = subsurface.kernel("retrace_exits");
-    fold_exits_ = Program(device, "fold_exits.cl").kernel("fold_exits");
+    fold_exits_ = kernels.program(device, "fold_exits.cl").kernel("fold_exits");
     sum_ = Program(device, "sum_ledgers.cl").kernel("sum_ledgers");
 }
 
@@ -64,7 +64,7 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
                  pass.photon_flux, rays_, flux_, ledgers_, alive_);
     std::uint32_t count = photons, event = 0;
     for (; count > 0; ++event) {
-        trace_.launch(count, alive_, count, scene.nodes, scene.blocks, scene.grid, rays_, hits_);
+        trace_.launch(count, alive_, count, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, rays_, hits_);
         EventRound round{};
         round.event = event;
         round.last = event + 1 >= round_limit ? 1 : 0;
@@ -149,10 +149,10 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
         sample_exits_.launch(r.count, r, pass.constants, r.component == STOKES_MAP_FLUORESCENCE ? fluorescence_ : elastic_,
                              points_, rays_, scene.materials, pass.rows, scene.tables.shapes, scene.tables.mean_rows,
                              scene.tables.cumulative_rows, exits_, probes_);
-    trace_probe_.launch(exits, exits, scene.nodes, scene.blocks, scene.grid, scene.triangles, probes_, probe_hits_);
+    trace_probe_.launch(exits, exits, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles, probes_, probe_hits_);
     place_exits_.launch(exits, exits, probes_, probe_hits_, scene.triangles, exits_);
     if (scene.transport == Transport::conserving)
-        fold_exits_.launch(exits, exits, pass.constants, scene.nodes, scene.blocks, scene.grid, scene.triangles, probes_,
+        fold_exits_.launch(exits, exits, pass.constants, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles, probes_,
                            exits_);
     for (EventRound& r : rounds) {
         PhotonMap& map = maps[r.component];
@@ -172,15 +172,15 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
 void PhotonTracer::walk_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
                                        PhotonMaps& maps) {
     if (round.count == 0) return;
-    if (!walk_) walk_.emplace(Program(device_, "walk_photons.cl").kernel("walk_photons"));
+    if (!walk_) walk_.emplace(scene.rays.kernels.program(device_, "walk_photons.cl").kernel("walk_photons"));
     WalkSlots slots{};
     for (std::uint32_t m = 0; m < 3; ++m) {
         maps[m].reserve(round.count);
         slots.first[m] = maps[m].used();
         slots.limit[m] = maps[m].capacity();
     }
-    walk_->launch(round.count, round, slots, pass.constants, elastic_, points_, scene.bodies, scene.nodes, scene.blocks,
-                  scene.grid, scene.triangles, scene.materials, pass.rows, rays_, flux_, ledgers_, maps[0].heads(),
+    walk_->launch(round.count, round, slots, pass.constants, elastic_, points_, scene.bodies, scene.rays.nodes,
+                  scene.rays.blocks, scene.rays.grid, scene.triangles, scene.materials, pass.rows, rays_, flux_, ledgers_, maps[0].heads(),
                   maps[0].flux(), maps[1].heads(), maps[1].flux(), maps[2].heads(), maps[2].flux());
     deposits_ += round.count;
     std::uint32_t refused = 0;  // the maps are of one size and grow together; a path is in one of them

@@ -39,7 +39,7 @@ struct PhotonAccount {
 class PhotonTracer {
   public:
     // Room for this many paths. Compiles the photon kernels.
-    PhotonTracer(const Device& device, std::uint32_t paths);
+    PhotonTracer(const Device& device, const RayKernels& kernels, std::uint32_t paths);
 
     // Follows all photons of a pass to their ends; the maps must have been cleared, their deposits are left in them.
     PhotonAccount trace(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons, PhotonMaps& maps);

@@ -91,7 +91,7 @@ struct HalfSpaceProbe::Bench {
           batches(std::max(least_batches, (s.photons + most_photons_per_batch - 1) / most_photons_per_batch)),
           photons(static_cast<std::uint32_t>((s.photons + batches - 1) / batches)),
           pass(on, scene, on_device),
-          tracer(on, photons),
+          tracer(on, on_device.rays.kernels, photons),
           maps{PhotonMap(on, "fluorescence", photons), PhotonMap(on, "single scattering", photons),
                PhotonMap(on, "multiple scattering", photons), PhotonMap(on, "surface", 1)} {
         on_device.bodies.upload({STOKES_BODY_FLAT});

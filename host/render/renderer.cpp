@@ -31,18 +31,19 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       on_device_(device, scene),
       photons_(checked_photons(scene)),
       pass_(device, scene_, on_device_),
-      tracer_(device, photons_),
+      tracer_(device, on_device_.rays.kernels, photons_),
       hash_builder_(device, first_capacity(photons_)),
       hash_(device, "photon map", first_capacity(photons_)),
       maps_(make_maps()),
       view_(device, make_camera_record(scene.camera, scene.film.width, scene.film.height)),
-      gather_(device, view_.camera()),
-      trace_(on_device_.has_fresnel ? Program(device, "see_surfaces.cl").kernel("trace_seen")
-                                    : Program(device, "trace_rays.cl").kernel("trace_closest_all")),
+      gather_(device, on_device_.rays.kernels, view_.camera()),
       camera_rays_(device, "camera rays", view_.ray_count()),
       camera_hits_(device, "camera hits", view_.ray_count()),
       film_(device, "film",
             std::vector<FilmValue>(std::size_t{STOKES_MAP_COUNT} * view_.ray_count(), FilmValue{0, 0, 0, 0})) {
+    const RayKernels& kernels = on_device_.rays.kernels;
+    trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
+    if (on_device_.has_fresnel) trace_seen_ = kernels.program(device, "see_surfaces.cl").kernel("trace_seen");
     first_radius_mm_ = scene.render.radius_mm ? *scene.render.radius_mm : find_first_radius();
 }
 
@@ -89,13 +90,13 @@ void Renderer::render_pass(std::uint32_t pass) {
 // What the camera's rays meet, at the end of all reflections; emitters among it are added to the film.
 void Renderer::see_points() {
     view_.make_rays(pass_.buffers().constants, camera_rays_);
+    const RayScene& rays = on_device_.rays;
+    const std::uint32_t count = view_.ray_count();
+    trace_.launch(rays.kernels.packets ? (count + ray_packet - 1) / ray_packet : count, count, rays.nodes, rays.blocks,
+                  rays.grid, camera_rays_, camera_hits_);
     if (on_device_.has_fresnel)
-        trace_.launch(view_.ray_count(), view_.camera(), pass_.buffers().constants, on_device_.nodes, on_device_.blocks,
-                      on_device_.grid, on_device_.triangles, on_device_.shapes, on_device_.materials, camera_rays_,
-                      camera_hits_);
-    else
-        trace_.launch(view_.ray_count(), view_.ray_count(), on_device_.nodes, on_device_.blocks, on_device_.grid,
-                      camera_rays_, camera_hits_);
+        trace_seen_.launch(count, view_.camera(), pass_.buffers().constants, rays.nodes, rays.blocks, rays.grid,
+                           on_device_.triangles, on_device_.shapes, on_device_.materials, camera_rays_, camera_hits_);
     gather_.collect_points(seen_scene(), pass_.buffers().constants, camera_rays_, camera_hits_, film_);
 }
 

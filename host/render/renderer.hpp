@@ -57,7 +57,8 @@ class Renderer {
     PhotonMaps maps_;
     CameraView view_;
     Gather gather_;
-    Kernel trace_;
+    Kernel trace_;       // camera rays, to what they meet first
+    Kernel trace_seen_;  // and on, where surfaces mirror
     Buffer<Ray> camera_rays_;
     Buffer<Hit> camera_hits_;
     Buffer<FilmValue> film_;

@@ -44,6 +44,7 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("scene", json_quoted(s.scene));
     add("device", json_quoted(s.device));
     add("driver", json_quoted(s.driver));
+    add("ray_kernel", json_quoted(s.ray_kernel));
     add("transport", json_quoted(s.transport));
     add("passes", number(std::uint64_t{s.passes}));
     add("seed", number(std::uint64_t{s.seed}));

@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "host/render/renderer.hpp"
-#include "host/scene/bvh_builder.hpp"
 #include "host/scene/scene_reader.hpp"
 #include "tests/bench/bench_scenes.hpp"
 #include "tests/bench/photon_stage.hpp"
@@ -100,17 +99,17 @@ Json grow_pixels(Setting& setting) {
 // The build on the host, and incoherent rays.
 Json grow_triangles(Setting& setting) {
     Json entries = Json::array();
-    Kernel closest = Program(setting.device, "trace_rays.cl").kernel("trace_closest_all");
     const double last = setting.pick(1e4, 1e6, 1e7);
     fmt::print("  {:>10}{:>12}{:>14}{:>12}{:>12}\n", "triangles", "build s", "ns/triangle", "Mray/s", "bytes each");
     for (double wanted = 1e4; wanted <= last * 1.001; wanted *= 10.0) {
         const std::vector<Triangle> triangles = sphere_hall(static_cast<std::size_t>(wanted));
         Bvh bvh;
-        const Timing build = time_of([&] { bvh = build_bvh(triangles, {16, BvhBounds::counts}, setting.threads); });
+        const Timing build = time_of([&] { bvh = build_bvh(triangles, ray_layout(setting.device), setting.threads); });
         const double bytes =
             static_cast<double>(bvh.nodes.size() * 4 + bvh.blocks.size() * sizeof(BvhBlock));
-        const Buffer<std::uint32_t> nodes(setting.device, "nodes", bvh.nodes);
-        const Buffer<BvhBlock> blocks(setting.device, "blocks", bvh.blocks);
+        const RayScene scene(setting.device, bvh);
+        bvh = {};
+        Kernel closest = scene.kernels.program(setting.device, "trace_rays.cl").kernel("trace_closest_all");
         const auto n = setting.pick(1000u, 200000u, 500000u);
         std::vector<Ray> rays(n);
         std::uint32_t state = 1;
@@ -127,7 +126,7 @@ Json grow_triangles(Setting& setting) {
         const Buffer<Hit> out(setting.device, "hits", n);
         Contest contest;
         contest.add("trace", [&] {
-            closest.launch(n, n, nodes, blocks, bvh.grid, in, out);
+            closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, in, out);
             setting.device.finish();
         });
         contest.run(setting.pick(1, 3, 5));

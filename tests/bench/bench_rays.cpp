@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <random>
 
 #include "host/render/camera_view.hpp"
-#include "host/scene/bvh_builder.hpp"
+#include "host/render/ray_casting.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/bench_scenes.hpp"
 #include "tests/bench/hit_check.hpp"
@@ -138,21 +139,24 @@ Casting make_casting(const Setting& setting, const std::string& name, std::vecto
     return casting;
 }
 
-// The kernels of one program.
+// The kernels of one program. camera: what the renderer casts camera rays by, which takes so many rays a work-item.
 struct Caster {
-    Kernel closest, any;
-    Caster(const Device& device, const std::vector<std::string>& options) {
-        const Program program(device, "trace_rays.cl", options);
+    Kernel closest, any, camera;
+    std::uint32_t packet;
+    Caster(const Device& device, const RayKernels& kernels) : packet(kernels.packets ? ray_packet : 1) {
+        const Program program = kernels.program(device, "trace_rays.cl");
         closest = program.kernel("trace_closest_all");
         any = program.kernel("trace_any");
+        camera = program.kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
     }
 };
 
-struct OnDevice {
-    Buffer<std::uint32_t> nodes;
-    Buffer<BvhBlock> blocks;
-    BvhGrid grid;
-};
+// The same nodes traversed without the processor's own instructions.
+RayKernels portable_kernels(const BvhLayout& layout) {
+    RayKernels kernels{bvh_kernel_options(layout), true};
+    kernels.options.push_back("-DSTOKES_BVH_PORTABLE");
+    return kernels;
+}
 
 // Of one set of rays. The contestants write to their own arrays, so that all hits can be compared.
 struct Outcome {
@@ -190,21 +194,21 @@ bool same_hit(const Hit& a, const Hit& b) {
 class RayBench {
   public:
     explicit RayBench(Setting& setting)
-        : setting_(setting),
-          team_(setting.threads),
-          usual_(setting.device, {}),
-          portable_(setting.device, {"-DSTOKES_BVH_PORTABLE"}) {}
+        : setting_(setting), team_(setting.threads) {}
 
     Json run(const Casting& casting) {
-        OnDevice scene;
+        const Device& device = setting_.device;
         Bvh bvh;
-        const double build_s = time_of([&] { bvh = build_bvh(casting.triangles, {16, BvhBounds::counts}, setting_.threads); }).wall_s;
-        scene.nodes = Buffer<std::uint32_t>(setting_.device, "nodes", bvh.nodes);
-        scene.blocks = Buffer<BvhBlock>(setting_.device, "blocks", bvh.blocks);
-        scene.grid = bvh.grid;
+        const double build_s =
+            time_of([&] { bvh = build_bvh(casting.triangles, ray_layout(device), setting_.threads); }).wall_s;
+        const RayScene scene(device, bvh);
+        usual_.emplace(device, scene.kernels);
+        portable_.emplace(device, portable_kernels(bvh.layout));
         const Others others(casting.triangles, setting_.threads);
         Json json{{"triangles", casting.triangles.size()},
                   {"build_s", build_s},
+                  {"bvh_width", bvh.layout.width},
+                  {"bvh_bounds", bvh.layout.bounds == BvhBounds::floats ? "floats" : "counts"},
                   {"bvh_bytes", bvh.nodes.size() * 4 + bvh.blocks.size() * sizeof(BvhBlock)}};
 #ifdef STOKES_WITH_EMBREE
         json["embree_build_s"] = others.fast.build_wall_s();
@@ -227,7 +231,7 @@ class RayBench {
     }
 
   private:
-    void measure(const Casting& casting, const RaySet& set, const OnDevice& scene, const Others& others,
+    void measure(const Casting& casting, const RaySet& set, const RayScene& scene, const Others& others,
                  Outcome& outcome) {
         const auto n = static_cast<std::uint32_t>(set.rays.size());
         const Buffer<Ray> rays(setting_.device, "rays", set.rays);
@@ -237,12 +241,14 @@ class RayBench {
         const auto cast = [&](Caster& caster, const Buffer<Hit>& out, const Buffer<std::uint32_t>& out_any) {
             if (set.kind == Kind::any)
                 caster.any.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, out_any);
+            else if (set.kind == Kind::coherent)
+                caster.camera.launch((n + caster.packet - 1) / caster.packet, n, scene.nodes, scene.blocks, scene.grid, rays, out);
             else
                 caster.closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, out);
             setting_.device.finish();
         };
-        outcome.contest.add("ours", [&] { cast(usual_, hits, occluded); });
-        outcome.contest.add("portable", [&] { cast(portable_, portable_hits, portable_occluded); });
+        outcome.contest.add("ours", [&] { cast(*usual_, hits, occluded); });
+        outcome.contest.add("portable", [&] { cast(*portable_, portable_hits, portable_occluded); });
 #ifdef STOKES_WITH_EMBREE
         std::vector<Hit> embree_hits(n);
         std::vector<std::uint32_t> embree_occluded(n);
@@ -256,8 +262,8 @@ class RayBench {
 #endif
         outcome.contest.run(setting_.pick(1, 3, 9));
         if (set.kind == Kind::any) {  // what lies on a segment must be what the nearest hit says
-            usual_.closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, hits);
-            portable_.closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, portable_hits);
+            usual_->closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, hits);
+            portable_->closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, portable_hits);
         }
         const std::vector<Hit> ours = hits.download(), others_hits = portable_hits.download();
         outcome.hits = check_hits(casting.triangles, set.rays, ours, reference_hits(others, team_, casting, set));
@@ -314,7 +320,7 @@ class RayBench {
 
     Setting& setting_;
     Team team_;
-    Caster usual_, portable_;
+    std::optional<Caster> usual_, portable_;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ class PhotonStage {
           photons_(photons),
           on_device_(device, scene_),
           pass_(device, scene_, on_device_),
-          tracer_(device, photons),
+          tracer_(device, on_device_.rays.kernels, photons),
           builder_(device, photons),
           hash_(device, "photon map", photons),
           maps_{map("fluorescence"), map("single scattering"), map("multiple scattering"), map("surface")} {}

@@ -106,6 +106,7 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
               "would replace the scene"},
              {"render " + sphere_scene + " --colour red" + out, "--colour"},
              {"render " + sphere_scene + " --device abacus" + out, "abacus"},
+             {"render " + sphere_scene + " --ray-kernel sse" + out, "--ray-kernel: expected"},
              {"render " + sphere_scene + small_render + "--quiet --max-memory 0.001" + out, "memory"},
              {"render " + sphere_scene + " --png " + folder.path() + "/none/x.png", "none/x.png"},
              {"tables " + sphere_scene, "-o"},

@@ -58,9 +58,9 @@ std::vector<SeenPoint> seen_points(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(rays.size());
     const Buffer<Ray> ray_buffer(device, "rays", rays);
     const Buffer<Hit> hits(device, "hits", count);
-    Program(device, "trace_rays.cl")
+    on_device.rays.kernels.program(device, "trace_rays.cl")
         .kernel("trace_closest_all")
-        .launch(count, count, on_device.nodes, on_device.blocks, on_device.grid, ray_buffer, hits);
+        .launch(count, count, on_device.rays.nodes, on_device.rays.blocks, on_device.rays.grid, ray_buffer, hits);
     const std::vector<Triangle> triangles = on_device.triangles.download();
     std::vector<SeenPoint> points;
     for (const Hit& hit : hits.download()) {

@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 
 #include "host/image/exr.hpp"
 #include "host/render/renderer.hpp"
@@ -12,9 +13,11 @@ using namespace stokes;
 
 namespace {
 
-FilmImage rendered(const Scene& scene, std::size_t local_size, std::initializer_list<std::uint32_t> passes) {
+FilmImage rendered(const Scene& scene, std::size_t local_size, std::initializer_list<std::uint32_t> passes,
+                   std::optional<RayShape> shape = {}) {
     Device device = Device::open("cpu");
     device.set_local_size(local_size);
+    if (shape) device.set_ray_shape(*shape);
     Renderer renderer(device, scene);
     for (const std::uint32_t pass : passes) renderer.render_pass(pass);
     return renderer.image();
@@ -36,6 +39,25 @@ TEST_CASE("a picture has the same bits for any work-group size", "[reproducible]
         for (const float v : first.xyz[c]) sum += static_cast<double>(v);
     }
     CHECK(sum > 0.0);
+}
+
+TEST_CASE("a picture has the same bits for every shape of the ray kernels", "[reproducible]") {
+    const auto same = [](Transport transport, std::initializer_list<RayShape> shapes) {
+        const Scene scene = small_scene(transport);
+        const FilmImage usual = rendered(scene, 64, {0});
+        for (const RayShape shape : shapes) {
+            const FilmImage other = rendered(scene, 64, {0}, shape);
+            double sum = 0.0;
+            for (std::size_t c = 0; c < component_count; ++c) {
+                CAPTURE(c, static_cast<int>(shape));
+                CHECK(same_bits(usual.xyz[c], other.xyz[c]));
+                for (const float v : other.xyz[c]) sum += static_cast<double>(v);
+            }
+            CHECK(sum > 0.0);
+        }
+    };
+    same(Transport::conserving, {RayShape::avx2, RayShape::portable, RayShape::scalar});
+    same(Transport::walk, {RayShape::scalar});
 }
 
 TEST_CASE("a pass does not depend on the passes before it", "[reproducible]") {

@@ -55,7 +55,7 @@ class Bench {
   public:
     Bench(const std::vector<Seen>& seen, const std::vector<Photon>& photons, float radius_mm)
         : count_(static_cast<std::uint32_t>(seen.size())),
-          gather_(test_device(), camera()),
+          gather_(test_device(), {}, camera()),
           hash_(test_device(), "test", static_cast<std::uint32_t>(photons.size())),
           film_(test_device(), "film", std::vector<FilmValue>(4 * seen.size(), FilmValue{0, 0, 0, 0})),
           pass_(test_device(), "pass", std::vector<PassConstants>{pass_constants()}) {

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "host/render/gather.hpp"
-#include "host/scene/bvh_builder.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/statistics.hpp"
@@ -61,10 +60,8 @@ class Bench {
         materials[clear].exit_scale = 1.0f;
         Flux16 light{};
         light.v[0] = 3.0f;
-        bvh_ = build_bvh(triangles_, {16, BvhBounds::counts});
         const Device& device = test_device();
-        nodes_ = {device, "nodes", bvh_.nodes};
-        blocks_ = {device, "blocks", bvh_.blocks};
+        rays_ = RayScene(device, triangles_);
         scene_ = {{device, "triangles", triangles_},
                   {device, "shapes", shapes},
                   {device, "materials", materials},
@@ -89,11 +86,14 @@ class Bench {
         const Buffer<Ray> ray_buffer(device, "rays", rays);
         const Buffer<Hit> hits(device, "hits", rays.size());
         const Buffer<FilmValue> film(device, "film", std::vector<FilmValue>(4 * rays.size(), FilmValue{0, 0, 0, 0}));
-        Program(device, "see_surfaces.cl")
+        rays_.kernels.program(device, "trace_rays.cl")
+            .kernel("trace_closest_all")
+            .launch(rays.size(), camera.width, rays_.nodes, rays_.blocks, rays_.grid, ray_buffer, hits);
+        rays_.kernels.program(device, "see_surfaces.cl")
             .kernel("trace_seen")
-            .launch(rays.size(), camera, pass_buffer, nodes_, blocks_, bvh_.grid, scene_.triangles, scene_.shapes,
-                    scene_.materials, ray_buffer, hits);
-        Gather gather(device, camera);
+            .launch(rays.size(), camera, pass_buffer, rays_.nodes, rays_.blocks, rays_.grid, scene_.triangles,
+                    scene_.shapes, scene_.materials, ray_buffer, hits);
+        Gather gather(device, rays_.kernels, camera);
         gather.collect_points(scene_, pass_buffer, ray_buffer, hits, film);
         Seen seen{ray_buffer.download(), hits.download(), gather.points().download(), film.download()};
         seen.emission.erase(seen.emission.begin(), seen.emission.begin() + STOKES_MAP_SURFACE * camera.width);
@@ -108,9 +108,7 @@ class Bench {
 
   private:
     std::vector<Triangle> triangles_;
-    Bvh bvh_;
-    Buffer<std::uint32_t> nodes_;
-    Buffer<BvhBlock> blocks_;
+    RayScene rays_;
     GatherScene scene_;
 };
 

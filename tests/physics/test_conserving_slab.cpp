@@ -65,7 +65,7 @@ TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[c
         const DeviceScene on_device(device, scene);
         PassMaker pass(device, scene, on_device);
         const std::uint32_t batches = 24, photons = 32768;
-        PhotonTracer tracer(device, photons);
+        PhotonTracer tracer(device, on_device.rays.kernels, photons);
         PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                         PhotonMap(device, "surface", 16)};
         const PassWavelengths wavelengths = pass_wavelengths(scene.render, 3);

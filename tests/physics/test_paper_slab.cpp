@@ -76,7 +76,7 @@ TEST_CASE("the maps of a flat slab hold the flux that the paper's model says", "
             .launch(tables.entries, tables.values, static_cast<std::uint32_t>(tables.wavelengths.count),
                     static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step), lambda,
                     tables.at_wavelengths, tables.entries);
-        PhotonTracer tracer(device, photons);
+        PhotonTracer tracer(device, on_device.rays.kernels, photons);
         PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                         PhotonMap(device, "surface", 16)};  // small: they have to grow
         const PhotonAccount account = tracer.trace(on_device, pass, photons, maps);

@@ -77,7 +77,7 @@ std::array<std::array<double, 16>, STOKES_MAP_COUNT> deposited(const Scene& scen
             .launch(tables.entries, tables.values, static_cast<std::uint32_t>(tables.wavelengths.count),
                     static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step),
                     lambda, tables.at_wavelengths, tables.entries);
-    PhotonTracer tracer(device, photons);
+    PhotonTracer tracer(device, on_device.rays.kernels, photons);
     PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                     PhotonMap(device, "surface", 16)};
     tracer.trace(on_device, buffers, photons, maps);

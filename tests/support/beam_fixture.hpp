@@ -126,7 +126,7 @@ inline Measured measure(const Scene& scene, std::uint32_t batches, std::uint32_t
     const Device& device = test_device();
     const DeviceScene on_device(device, scene);
     PassMaker pass(device, scene, on_device);
-    PhotonTracer tracer(device, photons);
+    PhotonTracer tracer(device, on_device.rays.kernels, photons);
     Measured result;
     for (std::uint32_t batch = 0; batch < batches; ++batch) {
         PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),

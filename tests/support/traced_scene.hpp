@@ -48,6 +48,13 @@ struct Traced {
         program.kernel("trace_closest_all").launch(n, n, nodes, blocks, bvh.grid, in, out);
         return out.download();
     }
+    std::vector<Hit> packets(const std::vector<Ray>& rays) {
+        const Buffer<Ray> in(test_device(), "rays", rays);
+        const Buffer<Hit> out(test_device(), "hits", rays.size());
+        const auto n = static_cast<cl_uint>(rays.size());
+        program.kernel("trace_packets").launch((n + 15) / 16, n, nodes, blocks, bvh.grid, in, out);
+        return out.download();
+    }
     std::vector<cl_uint> any(const std::vector<Ray>& rays) {
         const Buffer<Ray> in(test_device(), "rays", rays);
         const Buffer<cl_uint> out(test_device(), "occluded", rays.size());
