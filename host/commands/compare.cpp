@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -24,28 +23,14 @@ struct CompareOptions {
     bool json = false;
 };
 
-std::string shown_list(const std::vector<std::string>& layers) {
-    std::vector<std::string> shown;
-    for (const std::string& layer : layers) shown.push_back(shown_layer(layer));
-    return fmt::format("{}", fmt::join(shown, ", "));
-}
-
-// Which of the layers are not in the picture.
-std::vector<std::string> missing(const std::vector<std::string>& layers, const ExrImage& picture) {
-    std::vector<std::string> result;
-    std::copy_if(layers.begin(), layers.end(), std::back_inserter(result),
-                 [&](const std::string& layer) { return picture.layers.count(layer) == 0; });
-    return result;
-}
-
 void check_same_layers(const CompareOptions& options, const ExrImage& picture, const ExrImage& reference) {
     std::string text;
     const auto check = [&](const ExrImage& has, const ExrImage& has_not, const std::string& file,
                            const std::string& other) {
-        const auto layers = missing(layers_in_order(has.layers), has_not);
+        const auto layers = missing_layers(layers_in_order(has.layers), has_not.layers);
         if (!layers.empty())
-            text += fmt::format("{}{}: no layer {}, which {} has", text.empty() ? "" : "; ", file, shown_list(layers),
-                                other);
+            text += fmt::format("{}{}: no layer {}, which {} has", text.empty() ? "" : "; ", file,
+                                shown_layers(layers), other);
     };
     check(picture, reference, options.reference_file, options.picture_file);
     check(reference, picture, options.picture_file, options.reference_file);
@@ -64,7 +49,7 @@ std::vector<std::string> chosen_layers(const CompareOptions& options, const ExrI
          {std::pair(&picture, &options.picture_file), std::pair(&reference, &options.reference_file)})
         if (image->layers.count(layer) == 0)
             throw InputError(fmt::format("--layer: no \"{}\" in {}; there are: {}", options.layer, *file,
-                                         shown_list(layers_in_order(image->layers))));
+                                         shown_layers(layers_in_order(image->layers))));
     return {layer};
 }
 
@@ -137,7 +122,7 @@ void add_compare_command(CLI::App& app) {
         ->type_name("T")
         ->check(number_in(0.0, 1e12));
     CLI::Option* diff =
-        command->add_option("--diff", options->diff_file, "Map of the error of --layer, or of the whole, in false colours")
+        command->add_option("--diff", options->diff_file, "Map of the error of --layer, or of the whole, in colours")
             ->type_name("OUT.png");
     command
         ->add_option("--diff-max", options->diff_max,

@@ -68,7 +68,8 @@ std::string Comparison::complaint() const {
     const auto add = [&](const std::string& what, const std::string& list) {
         if (!list.empty()) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", what, list);
     };
-    add("pixels of " + picture + " that are not finite", where(*this, [](const LayerError& e) { return e.not_finite; }));
+    add("pixels of " + picture + " that are not finite",
+        where(*this, [](const LayerError& e) { return e.not_finite; }));
     add("pixels of " + reference + " that are not finite",
         where(*this, [](const LayerError& e) { return e.reference_not_finite; }));
     std::string above;

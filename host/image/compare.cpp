@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -128,6 +129,19 @@ std::vector<std::string> layers_in_order(const RgbLayers& layers) {
     for (const char* name : component_names) add(name);
     for (const auto& [name, rgb] : layers) add(name);
     return names;
+}
+
+std::vector<std::string> missing_layers(const std::vector<std::string>& names, const RgbLayers& layers) {
+    std::vector<std::string> missing;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(missing),
+                 [&](const std::string& name) { return layers.count(name) == 0; });
+    return missing;
+}
+
+std::string shown_layers(const std::vector<std::string>& layers) {
+    std::vector<std::string> shown;
+    for (const std::string& layer : layers) shown.push_back(shown_layer(layer));
+    return fmt::format("{}", fmt::join(shown, ", "));
 }
 
 }  // namespace stokes

@@ -42,4 +42,9 @@ std::vector<double> pixel_errors(const std::vector<float>& picture, const std::v
 std::string shown_layer(const std::string& layer);
 std::vector<std::string> layers_in_order(const RgbLayers& layers);
 
+// Those of the names ("" for the whole) that are not among layers.
+std::vector<std::string> missing_layers(const std::vector<std::string>& names, const RgbLayers& layers);
+// "whole, single".
+std::string shown_layers(const std::vector<std::string>& layers);
+
 }  // namespace stokes
