@@ -24,6 +24,7 @@ const ObjectKeys medium{
 const ObjectKeys fluorophore{
     "fluorophore", {"excitation", "emission"}, {"conversion_per_nm", "quantum_yield"}};
 
+const ObjectKeys reflectance_texture{"reflectance_texture", {"texture", "black", "white"}, {}};
 const ObjectKeys material_diffuse{"material_diffuse", {"type", "reflectance"}, {}};
 const ObjectKeys material_black{"material_black", {"type"}, {}};
 const ObjectKeys material_translucent{
@@ -92,6 +93,7 @@ std::vector<ObjectKeys> all_object_keys() {
             spectrum_constant,
             medium,
             fluorophore,
+            reflectance_texture,
             material_diffuse,
             material_black,
             material_translucent,
