@@ -25,6 +25,7 @@ const ObjectKeys medium{
 const ObjectKeys fluorophore{
     "fluorophore", {"excitation", "emission"}, {"conversion_per_nm", "quantum_yield"}};
 
+const ObjectKeys reflectance_texture{"reflectance_texture", {"texture", "black", "white"}, {}};
 const ObjectKeys material_diffuse{"material_diffuse", {"type", "reflectance"}, {}};
 const ObjectKeys material_black{"material_black", {"type"}, {}};
 const ObjectKeys material_translucent{
@@ -66,6 +67,14 @@ const ObjectKeys shape_prism{
 const ObjectKeys shape_cylinder{"shape_cylinder",
                                 {"type", "material", "radius_mm", "height_mm"},
                                 {"name", "body", "transform", "segments"}};
+const ObjectKeys shape_mask{"shape_mask",
+                            {"type", "material", "width_mm", "height_mm", "file"},
+                            {"name", "body", "transform", "threshold", "invert"}};
+const ObjectKeys shape_tiles{
+    "shape_tiles", {"type", "materials", "columns", "rows", "size_mm"}, {"name", "transform"}};
+const ObjectKeys shape_sectors{"shape_sectors",
+                               {"type", "materials", "radius_mm", "height_mm"},
+                               {"name", "transform", "segments", "start_deg"}};
 
 const ObjectKeys transform_scale{"transform_scale", {"scale"}, {}};
 const ObjectKeys transform_rotate{"transform_rotate", {"rotate_axis", "angle_deg"}, {}};
@@ -86,6 +95,7 @@ std::vector<ObjectKeys> all_object_keys() {
             spectrum_constant,
             medium,
             fluorophore,
+            reflectance_texture,
             material_diffuse,
             material_black,
             material_translucent,
@@ -101,6 +111,9 @@ std::vector<ObjectKeys> all_object_keys() {
             shape_disk,
             shape_prism,
             shape_cylinder,
+            shape_mask,
+            shape_tiles,
+            shape_sectors,
             transform_scale,
             transform_rotate,
             transform_translate};
