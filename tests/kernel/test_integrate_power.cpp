@@ -275,9 +275,10 @@ TEST_CASE("powers are finite in the thinnest and densest media", "[integrate_pow
             }
 }
 
-// Chi-square in 64 cells of equal probability; all of them together wrong once in 1000.
+// Chi-square in 64 cells of equal probability, and the mean of the probability of a smaller distance, which is uniform;
+// all of them together wrong once in 1000.
 TEST_CASE("distances have the mean over wavelengths of the power as density", "[integrate_power]") {
-    const double level = sidak_level(1e-3, comparisons);
+    const double level = sidak_level(1e-3, 2 * comparisons);
     int compared = 0;
     for (const Case& c : cases())
         for (const std::uint32_t component : components)
@@ -286,14 +287,18 @@ TEST_CASE("distances have the mean over wavelengths of the power as density", "[
                 CAPTURE(c.medium.name, component, angle_deg);
                 const FineDensity density(c.medium, component, std::min(angle_deg, 89.1));
                 const Drawn drawn =
-                    draw(make_medium_mixture(c.medium, 7), 1.0f, component, angle_deg, 1u << 16, c.seed);
+                    draw(make_medium_mixture(c.medium, 7), 1.0f, component, angle_deg, 1u << 18, c.seed);
                 std::vector<double> counts(64, 0.0);
+                double sum = 0.0;
                 for (const float r : drawn.r_mm) {
                     REQUIRE((r >= 0.0f && r <= 9.9f));
                     const double p = density.probability_below(double(r));
                     counts[std::min(std::size_t(p * 64.0), std::size_t{63})] += 1.0;
+                    sum += p;
                 }
                 CHECK(chi_square_uniform(counts) > level);
+                const double n = double(drawn.r_mm.size());
+                CHECK(normal_two_sided((sum / n - 0.5) * std::sqrt(12.0 * n)) > level);
                 ++compared;
             }
     CHECK(compared == comparisons);
