@@ -62,7 +62,7 @@ std::array<Stored, 3> stored_light(const Scene& scene) {
     const DeviceScene on_device(device, scene);
     PassMaker maker(device, scene, on_device);
     maker.make(0, photons);
-    PhotonTracer tracer(device, photons);
+    PhotonTracer tracer(device, on_device.rays.kernels, photons);
     PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                     PhotonMap(device, "surface", 16)};
     const PhotonAccount account = tracer.trace(on_device, maker.buffers(), photons, maps);
