@@ -92,7 +92,8 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
 // Work-items: one per point; launched once per map. L = 1/(pi r^2) * sum over the map's photons of flux / pi
 // (eq. 6 of Kugita et al.), times the point's weight, for the surface map times the reflectance.
 // Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
-// material i, without its texture), textures, pass (to_x, to_y, to_z). Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
+// material i, without its texture), textures, pass (to_x, to_y, to_z).
+// Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
 __kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, HashGrid grid,
                               __global const uint* cell_starts, __global const float* positions,
                               __global const uint* normals, __global const float16* flux,

@@ -43,8 +43,9 @@ DeviceTextures upload_textures(const Device& device, const Scene& scene) {
             first_texel[picture] = static_cast<std::uint32_t>(texels.size());
             texels.insert(texels.end(), picture->luminance.begin(), picture->luminance.end());
         }
-        records.push_back({static_cast<std::uint32_t>(picture->width), static_cast<std::uint32_t>(picture->height),
-                           first_texel[picture], layout.white_row(textures++)});
+        records.push_back({static_cast<std::uint32_t>(picture->width),
+                           static_cast<std::uint32_t>(picture->height), first_texel[picture],
+                           layout.white_row(textures++)});
     }
     if (records.empty()) records.push_back({0, 0, 0, STOKES_NONE});
     std::vector<TriangleUv> uv(1);

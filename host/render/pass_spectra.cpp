@@ -54,8 +54,10 @@ SpectraLayout::SpectraLayout(const Scene& scene)
     : materials(static_cast<std::uint32_t>(scene.materials.size())),
       fluorophores(static_cast<std::uint32_t>(scene.fluorophores.size())),
       media(static_cast<std::uint32_t>(scene.media.size())),
-      textures(static_cast<std::uint32_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
-                                                        [](const Material& m) { return m.texture != nullptr; }))) {}
+      textures(
+          static_cast<std::uint32_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
+                                                   [](const Material& m) { return m.texture != nullptr; }))) {
+}
 
 // Given k wavelengths of a path in the set, the next is in it with probability (n - k)/(N - k).
 PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass) {

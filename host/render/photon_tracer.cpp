@@ -97,8 +97,9 @@ void PhotonTracer::scatter_at_surfaces(const DeviceScene& scene, const PassBuffe
     map.reserve(round.count);
     round.first_slot = map.used();
     round.slot_limit = map.capacity();
-    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows, scene.textures.records,
-                    scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_, map.heads(), map.flux());
+    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows,
+                    scene.textures.records, scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_,
+                    map.heads(), map.flux());
     deposits_ += round.count;
     refused_slots_ += map.advance(round.count);
 }

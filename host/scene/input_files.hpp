@@ -18,7 +18,8 @@ class InputFiles {
     // folder: of the scene.
     explicit InputFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    // The file named here. Throws InputError at this place of the scene, also where the memory does not suffice.
+    // The file named here. Throws InputError at this place of the scene, also where the memory does not
+    // suffice.
     const Content& read(const JsonCursor& file) {
         const std::string path = scene_path(folder_, file.text());
         const auto found = contents_.find(path);

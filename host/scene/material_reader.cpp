@@ -59,7 +59,8 @@ Fluorophore read_fluorophore(const std::string& name, const JsonCursor& where, S
 // As it looks on white paper.
 std::shared_ptr<const Picture> read_texture(const std::string& path) {
     Picture picture = read_picture(path);
-    for (std::size_t i = 0; i < picture.opacity.size(); ++i) picture.luminance[i] = picture.luminance_over(1.0f, i);
+    for (std::size_t i = 0; i < picture.opacity.size(); ++i)
+        picture.luminance[i] = picture.luminance_over(1.0f, i);
     picture.opacity.clear();
     return std::make_shared<const Picture>(std::move(picture));
 }

@@ -116,7 +116,8 @@ class ObjParser {
         const std::string_view rest = first == std::string_view::npos ? "" : token.substr(first + 1);
         const auto number = parse_integer(rest.substr(0, rest.find('/')));
         const auto count = static_cast<std::int64_t>(uvs_.size());
-        if (!number || *number == 0 || *number < -count || *number > std::numeric_limits<std::uint32_t>::max()) {
+        if (!number || *number == 0 || *number < -count ||
+            *number > std::numeric_limits<std::uint32_t>::max()) {
             largest_uv_ = no_uv;
             return 0;
         }
@@ -132,7 +133,7 @@ class ObjParser {
     Mesh mesh_;
     std::vector<glm::vec2> uvs_;
     std::vector<std::array<std::uint32_t, 3>> uv_triangles_;  // indices of uvs_, until one is missing
-    std::int64_t largest_uv_ = -1;  // no_uv: the mesh has no texture coordinates
+    std::int64_t largest_uv_ = -1;                            // no_uv: the mesh has no texture coordinates
     std::int64_t largest_index_ = -1;  // a face may come before its vertices, so this is checked at the end
     std::int64_t largest_index_line_ = 0;
 };

@@ -23,7 +23,8 @@ struct Decoding {
     std::string_view rest;
     std::string error;
     int width = 0, height = 0, channels = 0, bit_depth = 0;
-    std::vector<png_byte> samples;  // rows from the top down; 16-bit samples in the order of PNG, high byte first
+    std::vector<png_byte>
+        samples;  // rows from the top down; 16-bit samples in the order of PNG, high byte first
     std::vector<png_bytep> rows;
     bool out_of_memory = false;
 };
@@ -135,14 +136,16 @@ Picture parse_png(std::string_view bytes, const std::string& file) {
     Picture picture;
     picture.width = decoding.width;
     picture.height = decoding.height;
-    const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    const std::size_t pixels =
+        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
     picture.luminance.resize(pixels);
     if (has_alpha) picture.opacity.resize(pixels);
     for (std::size_t p = 0; p < pixels; ++p) {
         const std::size_t i = p * channels;
-        picture.luminance[p] = colour ? std::min(1.0f, 0.2126f * linear[sample(i)] + 0.7152f * linear[sample(i + 1)] +
-                                                           0.0722f * linear[sample(i + 2)])
-                                      : linear[sample(i)];
+        picture.luminance[p] =
+            colour ? std::min(1.0f, 0.2126f * linear[sample(i)] + 0.7152f * linear[sample(i + 1)] +
+                                        0.0722f * linear[sample(i + 2)])
+                   : linear[sample(i)];
         if (has_alpha)
             picture.opacity[p] =
                 static_cast<float>(sample(i + channels - 1)) / static_cast<float>(linear.size() - 1);

@@ -10,8 +10,8 @@ namespace stokes {
 inline constexpr int largest_picture = 8192;  // pixels, in width and in height
 
 struct Picture {
-    int width = 0;   // pixels
-    int height = 0;  // pixels
+    int width = 0;                 // pixels
+    int height = 0;                // pixels
     std::vector<float> luminance;  // linear, in [0, 1], of each pixel's own colour; rows from the top down
     std::vector<float> opacity;    // in [0, 1]; empty: all 1
 
@@ -22,9 +22,10 @@ struct Picture {
     }
 };
 
-// A PNG of any colour type, bit depth and interlacing. Samples are taken as sRGB (IEC 61966-2-1), whatever colour space
-// the file states; luminance is 0.2126 R + 0.7152 G + 0.0722 B of the linear values. file: for messages.
-// Throws InputError "FILE: REASON": not a PNG, damaged or cut off, wider or higher than largest_picture.
+// A PNG of any colour type, bit depth and interlacing. Samples are taken as sRGB (IEC 61966-2-1), whatever
+// colour space the file states; luminance is 0.2126 R + 0.7152 G + 0.0722 B of the linear values. file: for
+// messages. Throws InputError "FILE: REASON": not a PNG, damaged or cut off, wider or higher than
+// largest_picture.
 Picture parse_png(std::string_view bytes, const std::string& file);
 
 // Throws InputError also when the file cannot be read, std::bad_alloc when it does not fit into memory.

@@ -181,7 +181,8 @@ class PlyBody {
             const int i = element_->property(name);
             return i < 0 || element_->properties[static_cast<std::size_t>(i)].is_list ? -1 : i;
         };
-        for (const auto& [u, v] : {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")})
+        for (const auto& [u, v] :
+             {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")})
             if (number(u) >= 0 && number(v) >= 0) return {number(u), number(v)};
         return {-1, -1};
     }

@@ -100,7 +100,7 @@ Mesh read_mask(const JsonCursor& where, ShapeFiles& files) {
     }
 }
 
-const std::vector<std::string> shape_types = {"mesh", "box",      "sphere", "rectangle", "disk",
+const std::vector<std::string> shape_types = {"mesh",  "box",      "sphere", "rectangle", "disk",
                                               "prism", "cylinder", "mask",   "tiles",     "sectors"};
 constexpr std::size_t mask_type = 7, tiles_type = 8, sectors_type = 9;
 
@@ -142,9 +142,10 @@ std::vector<int> read_part_materials(const JsonCursor& where, const Scene& scene
     for (const JsonCursor& item : items) {
         materials.push_back(index_of_name(item, "materials", scene.materials));
         if (is_translucent(materials.back()) != is_translucent(materials.front()))
-            item.fail(fmt::format("expected materials all with light below their surfaces or all without, got \"{}\" and "
-                                  "\"{}\"",
-                                  material_of(scene, materials.front()).name, item.text()));
+            item.fail(fmt::format(
+                "expected materials all with light below their surfaces or all without, got \"{}\" and "
+                "\"{}\"",
+                material_of(scene, materials.front()).name, item.text()));
     }
     return materials;
 }
@@ -157,7 +158,8 @@ std::vector<Mesh> read_parts(const JsonCursor& where, std::size_t type, std::siz
         const auto rows = static_cast<int>(where.at("rows").integer(1, most_tiles));
         const glm::dvec3 size = where.at("size_mm").vector(length_range);
         if (parts >= columns + rows)
-            materials.fail_expected(fmt::format("at most {} materials for {} x {} tiles", columns + rows - 1, columns, rows));
+            materials.fail_expected(
+                fmt::format("at most {} materials for {} x {} tiles", columns + rows - 1, columns, rows));
         return make_tiles(size, columns, rows, parts);
     }
     if (parts > most_sectors) materials.fail_expected(fmt::format("at most {} materials", most_sectors));
@@ -226,7 +228,8 @@ void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, 
         shape.material = index_of_name(where.at("material"), "materials", scene.materials);
         shape.two_sided = type == mask_type;
         if (shape.two_sided && material_of(scene, shape.material).kind == MaterialKind::translucent)
-            where.at("material").fail("expected a black or diffuse material for a mask, got a translucent one");
+            where.at("material")
+                .fail("expected a black or diffuse material for a mask, got a translucent one");
         shape.body = read_body(where, shape.material, scene, bodies);
         add_shape(where, std::move(shape), read_transform(where), scene);
     }
@@ -245,9 +248,10 @@ int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform,
     const Material& material = material_of(scene, shape.material);
     if (!material.texture) shape.mesh.uv.clear();
     if (material.texture && shape.mesh.uv.empty())
-        where.fail(fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
-                               "mesh with texture coordinates",
-                               material.name));
+        where.fail(fmt::format(
+            "the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
+            "mesh with texture coordinates",
+            material.name));
     const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
     const std::size_t flat = std::min(flat_before, dropped);
     if (shape.mesh.triangles.empty()) {

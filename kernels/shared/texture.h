@@ -13,8 +13,8 @@ typedef struct TextureRecord {
 } TextureRecord;
 STOKES_ASSERT_SIZE(TextureRecord, 16);
 
-// Where the corners v0, v1, v2 of a triangle lie in the picture: (0, 0) is its top left corner, (1, 1) its bottom right.
-// Written by the host once per scene, one a triangle where any material has a texture.
+// Where the corners v0, v1, v2 of a triangle lie in the picture: (0, 0) is its top left corner, (1, 1) its bottom
+// right. Written by the host once per scene, one a triangle where any material has a texture.
 typedef struct TriangleUv {
     float u0, v0, u1, v1, u2, v2;
 } TriangleUv;

@@ -48,8 +48,8 @@ TEST_CASE("A mask covers the dark texels and their common edges, and nothing of 
         const auto is_dark = [&](double x, double z) {
             return picture.luminance[static_cast<std::size_t>(std::floor(z) * 23 + std::floor(x))] == 0.0f;
         };
-        // On a lattice of eighths of a texel, so that edges and corners are tried too: a place is inside a rectangle
-        // where all the texels that touch it are dark, and in none where all are bright.
+        // On a lattice of eighths of a texel, so that edges and corners are tried too: a place is inside a
+        // rectangle where all the texels that touch it are dark, and in none where all are bright.
         int wrong = 0;
         for (int i = 1; i < 8 * 23; ++i)
             for (int j = 1; j < 8 * 17; ++j) {
@@ -57,9 +57,9 @@ TEST_CASE("A mask covers the dark texels and their common edges, and nothing of 
                 int dark_around = 0;
                 for (const double dx : {-hair, hair})
                     for (const double dz : {-hair, hair}) dark_around += is_dark(x + dx, z + dz) ? 1 : 0;
-                const bool covered = std::any_of(rectangles.begin(), rectangles.end(), [&](const Rectangle& r) {
-                    return r.holds(x - 11.5, z - 8.5);
-                });
+                const bool covered =
+                    std::any_of(rectangles.begin(), rectangles.end(),
+                                [&](const Rectangle& r) { return r.holds(x - 11.5, z - 8.5); });
                 if (dark_around == 4) wrong += !covered;
                 if (dark_around < 4 && i % 8 != 0 && j % 8 != 0) wrong += covered;
                 if (dark_around == 0) wrong += covered;
@@ -106,8 +106,9 @@ TEST_CASE("The threshold is on the linear luminance, and inversion keeps what is
 }
 
 TEST_CASE("Masks without an opaque texel or of too many triangles are refused") {
-    CHECK(input_error([] { make_mask({1, 1, {1}, {}}, 1, 1, {}); }) ==
-          "expected a picture with an opaque texel, found none");
+    CHECK(input_error([] {
+              make_mask({1, 1, {1}, {}}, 1, 1, {});
+          }) == "expected a picture with an opaque texel, found none");
     const Picture checker = [] {
         Picture p{2048, 2048, {}, {}};
         for (int i = 0; i < 2048 * 2048; ++i) p.luminance.push_back(static_cast<float>((i + i / 2048) % 2));
@@ -137,7 +138,8 @@ TEST_CASE("A scene's mask: read, two-sided, and its mistakes named") {
     const auto error = [&](const std::string& rest, const std::string& material = "black") {
         return input_error([&] { scene(rest, material); }).substr(folder.path().size() + 1);
     };
-    CHECK_THAT(error(R"("file": "no.png")"), Contains("s.json:5: shapes[0].file: ") && Contains("cannot read: No such file"));
+    CHECK_THAT(error(R"("file": "no.png")"),
+               Contains("s.json:5: shapes[0].file: ") && Contains("cannot read: No such file"));
     CHECK(error(R"("file": "s.png", "treshold": 1)") ==
           "s.json:5: shapes[0]: unknown key \"treshold\"; did you mean \"threshold\"?");
     CHECK(error(R"("file": "m.png", "threshold": 0)") ==
@@ -145,5 +147,6 @@ TEST_CASE("A scene's mask: read, two-sided, and its mistakes named") {
     CHECK(error(R"("file": "bright.png")") ==
           "s.json:5: shapes[0].file: expected a picture with an opaque texel, found none");
     CHECK(error(R"("file": "m.png")", "glow") ==
-          "s.json:5: shapes[0].material: expected a black or diffuse material for a mask, got a translucent one");
+          "s.json:5: shapes[0].material: expected a black or diffuse material for a mask, got a translucent "
+          "one");
 }

@@ -84,8 +84,7 @@ TEST_CASE("The schema has the reader's limits") {
     CHECK(property("medium", "dipole_eta").at("maximum") == largest_dipole_eta);
     for (const auto& [kind, key] :
          {std::pair("reflectance_texture", "black"), std::pair("reflectance_texture", "white"),
-          std::pair("fluorophore", "excitation"),
-          std::pair("fluorophore", "emission")})
+          std::pair("fluorophore", "excitation"), std::pair("fluorophore", "emission")})
         CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
     CHECK(property("material_diffuse", "reflectance").at("$ref") == "#/$defs/reflectance");
     CHECK(schema.at("$defs").at("reflectance").at("oneOf").at(0).at("$ref") == "#/$defs/spectrum_up_to_1");

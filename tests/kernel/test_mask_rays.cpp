@@ -19,7 +19,8 @@ Picture noise(double dark) {
     std::mt19937 random(21);
     std::uniform_real_distribution<double> uniform;
     Picture picture{columns, rows, {}, {}};
-    for (int i = 0; i < columns * rows; ++i) picture.luminance.push_back(uniform(random) < dark ? 0.0f : 1.0f);
+    for (int i = 0; i < columns * rows; ++i)
+        picture.luminance.push_back(uniform(random) < dark ? 0.0f : 1.0f);
     return picture;
 }
 
@@ -34,8 +35,8 @@ struct Aim {
     std::vector<bool> opaque;  // what the ray meets
 };
 
-// Rays of random directions from both sides to random places of the mask, every other one to the seams between texels;
-// places within 1e-3 texels of both kinds of texel are left out.
+// Rays of random directions from both sides to random places of the mask, every other one to the seams
+// between texels; places within 1e-3 texels of both kinds of texel are left out.
 Aim aim_at(const Picture& picture, int count) {
     std::mt19937 random(22);
     std::uniform_real_distribution<double> uniform;

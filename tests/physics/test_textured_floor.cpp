@@ -16,8 +16,9 @@ const Spectrum bright = {{300.0, 780.0}, {0.2, 0.9}, Outside::hold};
 
 constexpr double floor_mm = 160.0;
 
-// A checkerboard of two by two texels, the top left one white; beyond their middles the picture is clamped, so that the
-// outer quarter on each side has the colour of one texel alone. All of the floor is lit, and nothing beside it.
+// A checkerboard of two by two texels, the top left one white; beyond their middles the picture is clamped,
+// so that the outer quarter on each side has the colour of one texel alone. All of the floor is lit, and
+// nothing beside it.
 Scene checkered_floor() {
     Scene scene;
     scene.file = "floor";
@@ -57,7 +58,8 @@ TEST_CASE("the squares of a checkered floor have the radiance of their own refle
         bool white;
     };
     const double far = 0.375 * floor_mm;
-    for (const Place& place : {Place{-far, -far, true}, Place{far, -far, false}, Place{-far, far, false}, Place{far, far, true}}) {
+    for (const Place& place :
+         {Place{-far, -far, true}, Place{far, -far, false}, Place{-far, far, false}, Place{far, far, true}}) {
         CAPTURE(place.x_mm, place.z_mm);
         Scene scene = checkered_floor();
         scene.camera = camera_above({place.x_mm, 0.0, place.z_mm}, 400.0, 20.0);
@@ -88,7 +90,8 @@ TEST_CASE("between two texels the radiance is the mean of both", "[textured]") {
     CHECK(std::abs(normal_of_t(ratio.z(1.0), static_cast<double>(ratio.count() - 1))) < 4.5);
 }
 
-// The picture's mean luminance is 1/2: the floor absorbs E (1 - (dark + bright)/2), at each wavelength of each pass.
+// The picture's mean luminance is 1/2: the floor absorbs E (1 - (dark + bright)/2), at each wavelength of
+// each pass.
 TEST_CASE("a checkered floor absorbs the mean of what its squares do, and the ledger closes", "[textured]") {
     const Scene scene = checkered_floor();
     Renderer renderer(test_device(), scene);
@@ -109,8 +112,8 @@ TEST_CASE("a checkered floor absorbs the mean of what its squares do, and the le
     CHECK(power.escaped + power.roulette == Approx(power.emitted - power.absorbed).epsilon(1e-4));
 }
 
-// A closed room of reflectance R under radiance 1 has 1/(1 - R) everywhere; so it has where R comes from a picture of one
-// luminance, black + L (white - black).
+// A closed room of reflectance R under radiance 1 has 1/(1 - R) everywhere; so it has where R comes from a
+// picture of one luminance, black + L (white - black).
 TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[textured]") {
     Scene scene;
     scene.file = "furnace";
@@ -136,7 +139,8 @@ TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[
     PassImages images(renderer);
     Sample ratio;
     for (std::uint32_t pass = 0; pass < 8; ++pass)
-        ratio.add(mean_xyz(images.next(pass), Component::surface).y / film_xyz(scene, pass, Spectrum::constant(2.0)).y);
+        ratio.add(mean_xyz(images.next(pass), Component::surface).y /
+                  film_xyz(scene, pass, Spectrum::constant(2.0)).y);
     CAPTURE(ratio.mean(), ratio.standard_error());
     CHECK(ratio.mean() == Approx(1.0).epsilon(0.01));
     CHECK(std::abs(renderer.book().ledger().power.imbalance()) < 1e-4);

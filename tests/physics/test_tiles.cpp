@@ -1,4 +1,5 @@
-// Light below the surface of a slab of two tiles: what enters one leaves through the other as if there were no border.
+// Light below the surface of a slab of two tiles: what enters one leaves through the other as if there were
+// no border.
 #include <cmath>
 #include <cstring>
 
@@ -17,8 +18,9 @@ namespace {
 constexpr double size_mm = 120.0;
 constexpr double border_mm = 0.8;  // from the beam to the border between the tiles
 
-// A slab of two tiles, the border at x = 0; a narrow beam falls straight down at x = -border_mm, on the tile whose
-// material is number 0 (a green dye in marble). The tile at x > 0 has number `other`: 1 has another medium and a red dye.
+// A slab of two tiles, the border at x = 0; a narrow beam falls straight down at x = -border_mm, on the tile
+// whose material is number 0 (a green dye in marble). The tile at x > 0 has number `other`: 1 has another
+// medium and a red dye.
 Scene two_tiles(Transport transport, int other) {
     Scene scene = slab_scene(0.5, 0.0, transport);
     Medium dark = scene.media[0];
@@ -90,8 +92,8 @@ constexpr Transport transports[] = {Transport::paper, Transport::conserving, Tra
 
 }  // namespace
 
-// Under a beam at right angles all azimuths are alike: of the light that leaves at distance r > d from the beam the share
-// acos(d/r)/pi leaves beyond a straight border at distance d.
+// Under a beam at right angles all azimuths are alike: of the light that leaves at distance r > d from the
+// beam the share acos(d/r)/pi leaves beyond a straight border at distance d.
 TEST_CASE("a tile gets the share of its neighbour's light that leaves beyond the border") {
     for (const Transport transport : transports) {
         CAPTURE(static_cast<int>(transport));
@@ -102,7 +104,8 @@ TEST_CASE("a tile gets the share of its neighbour's light that leaves beyond the
             double beyond = 0.0, all = 0.0;
             for (std::size_t i = 0; i < maps[m].heads.size(); ++i) {
                 const PhotonHead& head = maps[m].heads[i];
-                const double dx = static_cast<double>(head.x) + border_mm, r = std::hypot(dx, static_cast<double>(head.z));
+                const double dx = static_cast<double>(head.x) + border_mm,
+                             r = std::hypot(dx, static_cast<double>(head.z));
                 const double flux = sum_of(maps[m].flux[i]);
                 const double expected = r > border_mm ? std::acos(border_mm / r) / M_PI : 0.0;
                 difference.add(flux * ((head.x > 0.0f ? 1.0 : 0.0) - expected));
@@ -121,11 +124,14 @@ TEST_CASE("a tile gets the share of its neighbour's light that leaves beyond the
 TEST_CASE("what leaves a slab of two media is what leaves a slab of the first, bit for bit") {
     for (const Transport transport : transports) {
         CAPTURE(static_cast<int>(transport));
-        const std::array<Stored, 3> one = stored_light(two_tiles(transport, 0)), two = stored_light(two_tiles(transport, 1));
+        const std::array<Stored, 3> one = stored_light(two_tiles(transport, 0)),
+                                    two = stored_light(two_tiles(transport, 1));
         for (std::size_t m = 0; m < 3; ++m) {
             REQUIRE(one[m].heads.size() == two[m].heads.size());
-            CHECK(std::memcmp(one[m].heads.data(), two[m].heads.data(), one[m].heads.size() * sizeof(PhotonHead)) == 0);
-            CHECK(std::memcmp(one[m].flux.data(), two[m].flux.data(), one[m].flux.size() * sizeof(Flux16)) == 0);
+            CHECK(std::memcmp(one[m].heads.data(), two[m].heads.data(),
+                              one[m].heads.size() * sizeof(PhotonHead)) == 0);
+            CHECK(std::memcmp(one[m].flux.data(), two[m].flux.data(), one[m].flux.size() * sizeof(Flux16)) ==
+                  0);
         }
     }
 }
@@ -144,11 +150,13 @@ FilmImage seen_second_tile(Scene scene) {
 
 }  // namespace
 
-// The maps hold light that has left already: nothing of the second tile's medium or dye is in what the camera sees there.
+// The maps hold light that has left already: nothing of the second tile's medium or dye is in what the camera
+// sees there.
 TEST_CASE("the second tile glows in the light of the first's dye, as bright as the first would there") {
     for (const Transport transport : transports) {
         CAPTURE(static_cast<int>(transport));
-        const FilmImage one = seen_second_tile(two_tiles(transport, 0)), two = seen_second_tile(two_tiles(transport, 1));
+        const FilmImage one = seen_second_tile(two_tiles(transport, 0)),
+                        two = seen_second_tile(two_tiles(transport, 1));
         for (std::size_t c = 0; c < component_count; ++c) CHECK(one.xyz[c] == two.xyz[c]);
         const glm::dvec3 glow = mean_xyz(two, Component::fluorescence);
         CHECK(glow.y > 0.0);
@@ -156,8 +164,9 @@ TEST_CASE("the second tile glows in the light of the first's dye, as bright as t
     }
 }
 
-// The surface is the second tile's: where it reflects, light from below is seen as T/(1 - R_d), T = 1 - R(0) along the
-// normal, R(0) = ((eta - 1)/(eta + 1))^2 = 0.02. 1024 camera rays choose between mirror and surface: 0.0044 of the mean.
+// The surface is the second tile's: where it reflects, light from below is seen as T/(1 - R_d), T = 1 - R(0)
+// along the normal, R(0) = ((eta - 1)/(eta + 1))^2 = 0.02. 1024 camera rays choose between mirror and
+// surface: 0.0044 of the mean.
 TEST_CASE("light of the first tile is seen through the surface of the second") {
     const Scene plain = two_tiles(Transport::conserving, 1), smooth = two_tiles(Transport::conserving, 2);
     const double eta = smooth.media[1].eta, r = (eta - 1.0) / (eta + 1.0);

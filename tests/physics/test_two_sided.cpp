@@ -1,4 +1,5 @@
-// A two-sided sheet in a beam: it reflects from the side that is lit, whichever it is, and lets nothing through.
+// A two-sided sheet in a beam: it reflects from the side that is lit, whichever it is, and lets nothing
+// through.
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
@@ -11,8 +12,8 @@ constexpr double reflectance = 0.6;
 
 const Spectrum sloping = {{300.0, 780.0}, {0.5, 2.0}, Outside::zero};
 
-// A sheet in the plane y = 0, larger than the beam that falls on its middle from one side (1: above, -1: below), seen
-// from one side.
+// A sheet in the plane y = 0, larger than the beam that falls on its middle from one side (1: above, -1:
+// below), seen from one side.
 Scene lit_sheet(double light_side, double camera_side, bool two_sided) {
     Scene scene;
     scene.materials = {diffuse_material(reflectance)};
@@ -64,8 +65,8 @@ TEST_CASE("the back of a sheet with one side is black") {
     CHECK(power.absorbed == Approx(power.emitted).epsilon(1e-4));
 }
 
-// A disk of the density estimate that hangs half beyond the edge of the sheet, seen from behind: the share on the surface
-// is found there as it is in front.
+// A disk of the density estimate that hangs half beyond the edge of the sheet, seen from behind: the share on
+// the surface is found there as it is in front.
 TEST_CASE("the edge of a two-sided sheet is as bright as its middle, from behind too") {
     for (const double side : {1.0, -1.0}) {
         Scene scene = lit_sheet(side, side, true);
