@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <string>
 #include <thread>
+#include <utility>
 
 #include "host/core/error.hpp"
+#include "host/scene/bvh_parallel.hpp"
 #include "host/scene/bvh_tree.hpp"
 #include "host/scene/bvh_writer.hpp"
 
@@ -22,20 +23,51 @@ constexpr float farthest_mm = 1e12f;  // cubes of lengths stay far inside the ra
 // last entry keeps within STOKES_BVH_LEVELS whatever the triangles.
 constexpr std::array<int, 3> area_levels_tried{96, 24, STOKES_BVH_LEVELS - 28};
 
-std::vector<BvhRef> make_refs(const std::vector<Triangle>& triangles) {
-    if (triangles.size() > STOKES_BVH_LEAF) throw InputError("the scene has more than 2^31 triangles");
-    std::vector<BvhRef> refs(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        refs[i].triangle = static_cast<std::uint32_t>(i);
-        for (const std::array<float, 3>& corner : corners_of(triangles[i])) {
-            for (const float x : corner)
-                if (!(std::fabs(x) <= farthest_mm))
-                    throw InputError("triangle " + std::to_string(i) +
-                                     ": expected finite corners within 1e12 mm of the origin");
-            refs[i].box.add({corner, corner});
-        }
+// Spatial splits may add as many refs as there are triangles. Small scenes may add more: 6 MB of blocks.
+constexpr std::size_t always_added = 1 << 17;
+
+// A tree with spatial splits is taken when its expected cost is so much of the one without: what pays for a
+// split need not pay for the whole.
+constexpr float most_cut_cost = 0.95f;
+
+bool placeable(const BvhBox& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(box.lo[axis] >= -farthest_mm && box.hi[axis] <= farthest_mm)) return false;
+    return true;
+}
+
+// A set of all triangles.
+BvhSet make_set(const std::vector<Triangle>& triangles, unsigned threads) {
+    const auto count = static_cast<std::uint32_t>(triangles.size());
+    BvhSet set;
+    set.storage = std::make_shared<std::vector<BvhRef>>(count);
+    set.end = count;
+    struct Part {
+        BvhBox box;
+        std::uint32_t misplaced = STOKES_NONE;  // the first
+    };
+    const auto chunks = make_chunks(threads, 0, count);
+    for (const Part& part : run_chunks<Part>(threads, chunks, [&](std::uint32_t begin, std::uint32_t end) {
+             Part made;
+             for (std::uint32_t i = begin; i < end; ++i) {
+                 BvhRef& ref = set.ref(i);
+                 ref.triangle = i;
+                 bool finite = true;
+                 for (const std::array<float, 3>& corner : corners_of(triangles[i])) {
+                     ref.box.add({corner, corner});
+                     for (const float x : corner) finite = finite && std::isfinite(x);
+                 }
+                 if (made.misplaced == STOKES_NONE && !(finite && placeable(ref.box))) made.misplaced = i;
+                 made.box.add(ref.box);
+             }
+             return made;
+         })) {
+        if (part.misplaced != STOKES_NONE)
+            throw InputError("triangle " + std::to_string(part.misplaced) +
+                             ": expected finite corners within 1e12 mm of the origin");
+        set.box.add(part.box);
     }
-    return refs;
+    return set;
 }
 
 // A flat axis takes part of the largest extent, a scene without any extent 1 mm.
@@ -56,24 +88,31 @@ BvhGrid make_grid(const BvhBox& box) {
 
 Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhLayout& layout, unsigned threads) {
     if (layout.width != 8 && layout.width != 16) throw InputError("BVH width: expected 8 or 16");
+    if (triangles.size() > STOKES_BVH_LEAF) throw InputError("the scene has more than 2^31 triangles");
+    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
     Bvh bvh;
     bvh.layout = layout;
-    std::vector<BvhRef> refs = make_refs(triangles);
-    const auto count = static_cast<std::uint32_t>(refs.size());
-    const BvhRange all = make_range(refs, 0, count);
-    bvh.grid = make_grid(count > 0 ? all.box : BvhBox{{0, 0, 0}, {0, 0, 0}});
-    if (count == 0) {
+    if (triangles.empty()) {
+        bvh.grid = make_grid({{0, 0, 0}, {0, 0, 0}});
         if (layout.bounds == BvhBounds::automatic) bvh.layout.bounds = BvhBounds::counts;
         return bvh;
     }
-
-    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-    std::unique_ptr<BvhTree> tree;
+    const auto build = [&](int area_levels, std::size_t spare, bool& may_cut) {
+        BvhSet all = make_set(triangles, threads);
+        all.spare = spare;
+        bvh.grid = make_grid(all.box);
+        const BvhClipper clipper(triangles, all.box);
+        return build_tree(std::move(all), clipper, {layout.width, area_levels, threads}, may_cut);
+    };
     for (const int area_levels : area_levels_tried) {
-        tree = build_tree(refs, all, layout.width, area_levels, threads);
-        if (wide_levels(*tree, layout.width) <= STOKES_BVH_LEVELS) break;
+        bool may_cut = false;
+        const auto tree = build(area_levels, 0, may_cut);
+        if (may_cut && area_levels == area_levels_tried.front()) {
+            const auto cut = build(area_levels, std::max(triangles.size(), always_added), may_cut);
+            if (cut->cost() < most_cut_cost * tree->cost() && write_bvh(*cut, triangles, threads, bvh)) break;
+        }
+        if (write_bvh(*tree, triangles, threads, bvh)) break;
     }
-    write_bvh(*tree, refs, triangles, bvh);
     return bvh;
 }
 

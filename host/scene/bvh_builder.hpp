@@ -29,12 +29,15 @@ struct Bvh {
 };
 
 // Builds the hierarchy by the binned surface area heuristic with cost per block of eight triangles (Wald
-// 2007, "On fast construction of SAH-based bounding volume hierarchies"), made wide by the optimal collapse
-// of Ylitie, Karras and Laine 2017, "Efficient incoherent ray traversal on GPUs through compressed wide
-// BVHs". Corners [mm] are v0, v0 + e1, v0 + e2 rounded to float. Every triangle lies in exactly one block,
-// degenerate ones included; there are at most STOKES_BVH_LEVELS levels of nodes. The result is the same for
-// any number of threads (0: as many as the machine has). InputError for a corner that is not finite or
-// farther than 1e12 mm from the origin on an axis, for more than 2^31 triangles, and for another width.
+// 2007, "On fast construction of SAH-based bounding volume hierarchies"), with spatial splits where they pay
+// (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"), made wide by the
+// optimal collapse of Ylitie, Karras and Laine 2017, "Efficient incoherent ray traversal on GPUs through
+// compressed wide BVHs". Corners [mm] are v0, v0 + e1, v0 + e2 rounded to float. Every triangle lies in at
+// least one block, degenerate ones included, and every point of it below one of them in all boxes above; all
+// blocks together hold at most twice the triangles, or 2^17 more. There are at most STOKES_BVH_LEVELS levels
+// of nodes. The result is the same for any number of threads (0: as many as the machine has). InputError for
+// a corner that is not finite or farther than 1e12 mm from the origin on an axis, for more than 2^31
+// triangles, and for another width.
 Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhLayout& layout = {}, unsigned threads = 0);
 
 // Build options of kernels that traverse such nodes (kernels/shared/bvh.h); automatic: as counts.

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "host/scene/bvh_parallel.hpp"
+
 namespace stokes {
 
 namespace {
@@ -58,127 +60,145 @@ float above<float>(double x) {
 // but for a common factor.
 struct Cost {
     double exact = 0.0, counted = 0.0;
-};
 
-void add_cost(const BvhTree& tree, int width, const BvhGrid& grid, Cost& cost) {
-    for (const BvhTree* child : wide_children(tree, width)) {
-        const GridBox box = on_grid(child->range.box, grid);
+    void add(const BvhBox& box, const BvhGrid& grid) {
+        const GridBox on = on_grid(box, grid);
         const std::array<double, 3> scale{grid.scale_x, grid.scale_y, grid.scale_z};
-        std::array<double, 3> exact{}, counted{};
+        std::array<double, 3> side{}, counted_side{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            exact[axis] = (box.hi[axis] - box.lo[axis]) / scale[axis];
-            counted[axis] =
-                (above<unsigned short>(box.hi[axis]) - below<unsigned short>(box.lo[axis])) / scale[axis];
+            side[axis] = (on.hi[axis] - on.lo[axis]) / scale[axis];
+            counted_side[axis] = (above<unsigned short>(on.hi[axis]) - below<unsigned short>(on.lo[axis])) / scale[axis];
         }
-        cost.exact += exact[0] * exact[1] + exact[1] * exact[2] + exact[2] * exact[0];
-        cost.counted += counted[0] * counted[1] + counted[1] * counted[2] + counted[2] * counted[0];
-        if (!child->leaf()) add_cost(*child, width, grid, cost);
-    }
-}
-
-template <class Node, class Bound>
-class Writer {
-  public:
-    Writer(const std::vector<Triangle>& triangles, const std::vector<BvhRef>& refs, Bvh& bvh)
-        : triangles_(triangles), refs_(refs), bvh_(bvh) {}
-
-    void write_all(const BvhTree& tree) {
-        bvh_.grid.root = write(tree);
-        bvh_.node_count = nodes_.size();
-        bvh_.nodes.resize(nodes_.size() * sizeof(Node) / 4);
-        if (!nodes_.empty()) std::memcpy(bvh_.nodes.data(), nodes_.data(), nodes_.size() * sizeof(Node));
+        exact += half_area(side);
+        counted += half_area(counted_side);
     }
 
   private:
-    static constexpr int width = sizeof(Node::child) / 4;
+    static double half_area(const std::array<double, 3>& side) {
+        return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
+    }
+};
+
+// A wide node: its children, the first of them leaves, and their child words.
+struct WideNode {
+    std::array<const BvhTree*, BvhTree::widest> children{};
+    std::array<std::uint32_t, BvhTree::widest> words{};
+};
+
+// All wide nodes, depth first. The blocks of one node lie together.
+struct WideTree {
+    explicit WideTree(int most_children) : width(most_children) {}
+
+    int width;
+    std::vector<WideNode> nodes;
+    std::uint32_t blocks = 0;
+    int levels = 0;
 
     // Returns the child word.
-    std::uint32_t write(const BvhTree& tree) {
-        return tree.leaf() ? write_block(tree.range) : write_node(tree);
-    }
-
-    // The blocks of one node lie together; nodes stand depth first.
-    std::uint32_t write_node(const BvhTree& tree) {
+    std::uint32_t add(const BvhTree& tree, int level = 1) {
+        if (tree.leaf()) return STOKES_BVH_LEAF | blocks++;
+        levels = std::max(levels, level);
+        const auto index = static_cast<std::uint32_t>(nodes.size());
+        nodes.emplace_back();
         const std::vector<const BvhTree*> children = wide_children(tree, width);
-        const auto index = static_cast<std::uint32_t>(nodes_.size());
-        nodes_.push_back(bound(children));
         for (const bool leaves : {true, false})
             for (std::size_t slot = 0; slot < children.size(); ++slot) {
                 if (children[slot]->leaf() != leaves) continue;
-                const std::uint32_t child = write(*children[slot]);
-                nodes_[index].child[slot] = child;
+                const std::uint32_t word = add(*children[slot], level + 1);
+                nodes[index].children[slot] = children[slot];
+                nodes[index].words[slot] = word;
             }
         return index;
     }
-
-    Node bound(const std::vector<const BvhTree*>& children) const {
-        Node node{};
-        for (std::size_t slot = 0; slot < width; ++slot) {
-            node.lo_x[slot] = node.lo_y[slot] = node.lo_z[slot] = 65535;
-            node.child[slot] = STOKES_BVH_LEAF;
-        }
-        for (std::size_t slot = 0; slot < children.size(); ++slot) {
-            const GridBox box = on_grid(children[slot]->range.box, bvh_.grid);
-            node.lo_x[slot] = below<Bound>(box.lo[0]);
-            node.lo_y[slot] = below<Bound>(box.lo[1]);
-            node.lo_z[slot] = below<Bound>(box.lo[2]);
-            node.hi_x[slot] = above<Bound>(box.hi[0]);
-            node.hi_y[slot] = above<Bound>(box.hi[1]);
-            node.hi_z[slot] = above<Bound>(box.hi[2]);
-        }
-        return node;
-    }
-
-    std::uint32_t write_block(const BvhRange& range) {
-        std::vector<std::uint32_t> members;
-        for (std::uint32_t i = range.begin; i < range.end; ++i) members.push_back(refs_[i].triangle);
-        std::sort(members.begin(), members.end());
-        BvhBlock block{};
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-            const bool used = lane < members.size();
-            const BvhCorners at = corners_of(triangles_[used ? members[lane] : members.front()]);
-            const std::size_t second = used ? 1 : 0, third = used ? 2 : 0;
-            block.v0x[lane] = at[0][0], block.v0y[lane] = at[0][1], block.v0z[lane] = at[0][2];
-            block.v1x[lane] = at[second][0], block.v1y[lane] = at[second][1], block.v1z[lane] = at[second][2];
-            block.v2x[lane] = at[third][0], block.v2y[lane] = at[third][1], block.v2z[lane] = at[third][2];
-            block.triangle[lane] = used ? members[lane] : STOKES_NONE;
-        }
-        bvh_.blocks.push_back(block);
-        return STOKES_BVH_LEAF | static_cast<std::uint32_t>(bvh_.blocks.size() - 1);
-    }
-
-    const std::vector<Triangle>& triangles_;
-    const std::vector<BvhRef>& refs_;
-    std::vector<Node> nodes_;
-    Bvh& bvh_;
 };
 
+BvhBlock make_block(const BvhTree& leaf, const std::vector<Triangle>& triangles) {
+    BvhBlock block{};
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+        const bool used = lane < leaf.triangle_count;
+        const BvhCorners at = corners_of(triangles[leaf.triangles[used ? lane : 0]]);
+        const std::size_t second = used ? 1 : 0, third = used ? 2 : 0;
+        block.v0x[lane] = at[0][0], block.v0y[lane] = at[0][1], block.v0z[lane] = at[0][2];
+        block.v1x[lane] = at[second][0], block.v1y[lane] = at[second][1], block.v1z[lane] = at[second][2];
+        block.v2x[lane] = at[third][0], block.v2y[lane] = at[third][1], block.v2z[lane] = at[third][2];
+        block.triangle[lane] = used ? leaf.triangles[lane] : STOKES_NONE;
+    }
+    return block;
+}
+
 template <class Node, class Bound>
-void write_as(const BvhTree& tree, const std::vector<BvhRef>& refs, const std::vector<Triangle>& triangles, Bvh& bvh) {
-    Writer<Node, Bound>(triangles, refs, bvh).write_all(tree);
+Node make_node(const WideNode& wide, const BvhGrid& grid) {
+    constexpr std::size_t width = sizeof(Node::child) / 4;
+    Node node{};
+    for (std::size_t slot = 0; slot < width; ++slot) {
+        if (wide.children[slot] == nullptr) {
+            node.lo_x[slot] = node.lo_y[slot] = node.lo_z[slot] = 65535;
+            node.child[slot] = STOKES_BVH_LEAF;
+            continue;
+        }
+        const GridBox box = on_grid(wide.children[slot]->box, grid);
+        node.lo_x[slot] = below<Bound>(box.lo[0]);
+        node.lo_y[slot] = below<Bound>(box.lo[1]);
+        node.lo_z[slot] = below<Bound>(box.lo[2]);
+        node.hi_x[slot] = above<Bound>(box.hi[0]);
+        node.hi_y[slot] = above<Bound>(box.hi[1]);
+        node.hi_z[slot] = above<Bound>(box.hi[2]);
+        node.child[slot] = wide.words[slot];
+    }
+    return node;
+}
+
+template <class Node, class Bound>
+void write_nodes(const WideTree& wide, unsigned threads, Bvh& bvh) {
+    constexpr std::size_t words = sizeof(Node) / 4;
+    bvh.nodes.resize(wide.nodes.size() * words);
+    const auto chunks = make_chunks(threads, 0, static_cast<std::uint32_t>(wide.nodes.size()));
+    run_parallel(threads, chunks.size(), [&](std::size_t chunk) {
+        for (std::size_t i = chunks[chunk].first; i < chunks[chunk].second; ++i) {
+            const Node node = make_node<Node, Bound>(wide.nodes[i], bvh.grid);
+            std::memcpy(bvh.nodes.data() + i * words, &node, sizeof node);
+        }
+    });
+}
+
+void write_blocks(const WideTree& wide, const std::vector<Triangle>& triangles, unsigned threads, Bvh& bvh) {
+    const auto chunks = make_chunks(threads, 0, static_cast<std::uint32_t>(wide.nodes.size()));
+    run_parallel(threads, chunks.size(), [&](std::size_t chunk) {
+        for (std::size_t i = chunks[chunk].first; i < chunks[chunk].second; ++i) {
+            const WideNode& node = wide.nodes[i];
+            for (std::size_t slot = 0; slot < node.children.size(); ++slot)
+                if (node.children[slot] != nullptr && node.children[slot]->leaf())
+                    bvh.blocks[node.words[slot] ^ STOKES_BVH_LEAF] = make_block(*node.children[slot], triangles);
+        }
+    });
+}
+
+BvhBounds choose_bounds(const WideTree& wide, const BvhGrid& grid) {
+    Cost cost;
+    for (const WideNode& node : wide.nodes)
+        for (const BvhTree* child : node.children)
+            if (child != nullptr) cost.add(child->box, grid);
+    return cost.counted > most_count_cost * cost.exact ? BvhBounds::floats : BvhBounds::counts;
 }
 
 }  // namespace
 
-BvhCorners corners_of(const Triangle& t) {
-    const auto sum = [](float a, float b) { return static_cast<float>(static_cast<double>(a) + b); };
-    return {{{t.v0x, t.v0y, t.v0z},
-             {sum(t.v0x, t.e1x), sum(t.v0y, t.e1y), sum(t.v0z, t.e1z)},
-             {sum(t.v0x, t.e2x), sum(t.v0y, t.e2y), sum(t.v0z, t.e2z)}}};
-}
-
-void write_bvh(const BvhTree& tree, const std::vector<BvhRef>& refs, const std::vector<Triangle>& triangles, Bvh& bvh) {
-    BvhLayout& layout = bvh.layout;
-    if (layout.bounds == BvhBounds::automatic) {
-        Cost cost;
-        if (!tree.leaf()) add_cost(tree, layout.width, bvh.grid, cost);
-        layout.bounds = cost.counted > most_count_cost * cost.exact ? BvhBounds::floats : BvhBounds::counts;
-    }
-    const bool floats = layout.bounds == BvhBounds::floats;
-    if (layout.width == 16 && !floats) write_as<BvhNode16, unsigned short>(tree, refs, triangles, bvh);
-    if (layout.width == 16 && floats) write_as<BvhNode16f, float>(tree, refs, triangles, bvh);
-    if (layout.width == 8 && !floats) write_as<BvhNode8, unsigned short>(tree, refs, triangles, bvh);
-    if (layout.width == 8 && floats) write_as<BvhNode8f, float>(tree, refs, triangles, bvh);
+bool write_bvh(const BvhTree& tree, const std::vector<Triangle>& triangles, unsigned threads, Bvh& bvh) {
+    WideTree wide(bvh.layout.width);
+    const std::uint32_t root = wide.add(tree);
+    if (wide.levels > STOKES_BVH_LEVELS) return false;
+    bvh.grid.root = root;
+    bvh.node_count = wide.nodes.size();
+    bvh.blocks.resize(wide.blocks);
+    if (tree.leaf()) bvh.blocks[0] = make_block(tree, triangles);
+    write_blocks(wide, triangles, threads, bvh);
+    if (bvh.layout.bounds == BvhBounds::automatic) bvh.layout.bounds = choose_bounds(wide, bvh.grid);
+    const bool floats = bvh.layout.bounds == BvhBounds::floats;
+    if (bvh.layout.width == 16 && !floats) write_nodes<BvhNode16, unsigned short>(wide, threads, bvh);
+    if (bvh.layout.width == 16 && floats) write_nodes<BvhNode16f, float>(wide, threads, bvh);
+    if (bvh.layout.width == 8 && !floats) write_nodes<BvhNode8, unsigned short>(wide, threads, bvh);
+    if (bvh.layout.width == 8 && floats) write_nodes<BvhNode8f, float>(wide, threads, bvh);
+    return true;
 }
 
 }  // namespace stokes
