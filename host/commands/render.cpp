@@ -32,6 +32,7 @@ extern "C" void catch_signal(int signal) {
 
 struct RenderOptions {
     std::string scene_file, exr_file, png_file, stats_file, device, kernel_directory, size, transport;
+    std::string sampling, wavelengths;
     int passes = 0, threads = 0;
     std::int64_t photons = 0;
     std::uint32_t seed = 0;
@@ -49,6 +50,12 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--radius")) render.radius_mm = options.radius_mm;
     if (command.count("--transport"))
         render.transport = static_cast<Transport>(index_of_word(options.transport, transport_words));
+    if (command.count("--sampling")) {
+        render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
+        render.wavelengths.reset();
+    }
+    if (command.count("--wavelengths"))
+        render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -67,6 +74,7 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.scene", stats.scene},
             {"stokes.device", stats.device},
             {"stokes.transport", stats.transport},
+            {"stokes.wavelengths", stats.wavelengths},
             {"stokes.passes", static_cast<int>(stats.passes)},
             {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
             {"stokes.seed", static_cast<double>(stats.seed)},
@@ -85,6 +93,7 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.device = device.description().name;
     stats.driver = device.description().platform + " " + device.description().driver;
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
+    stats.wavelengths = wavelengths_words[static_cast<std::size_t>(wavelengths_of(scene.render))];
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -214,6 +223,14 @@ void add_render_command(CLI::App& app) {
     command->add_option("--transport", options->transport, "How light travels below translucent surfaces")
         ->type_name("MODEL")
         ->check(word_of(transport_words));
+    command->add_option("--sampling", options->sampling, "Plain samplers, or those with the least noise; default: best")
+        ->type_name("KIND")
+        ->check(word_of(sampling_words));
+    command
+        ->add_option("--wavelengths", options->wavelengths,
+                     "How a pass draws its wavelengths; default: importance, for transport paper uniform")
+        ->type_name("HOW")
+        ->check(word_of(wavelengths_words));
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

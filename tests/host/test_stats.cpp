@@ -16,6 +16,7 @@ RenderStats example() {
     stats.device = "pthread-cpu";
     stats.driver = "3.1";
     stats.transport = "walk";
+    stats.wavelengths = "importance";
     stats.passes = 12;
     stats.seed = 4000000000u;
     stats.width = 640;
@@ -55,6 +56,7 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     const nlohmann::json json = written(example());
     CHECK(json.at("passes") == 12);
     CHECK(json.at("transport") == "walk");
+    CHECK(json.at("wavelengths") == "importance");
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
     CHECK(json.at("photons_emitted") == 12000000000ull);
