@@ -35,6 +35,17 @@ double joint_ratio(std::vector<std::uint32_t> strata) {
     return ratio;
 }
 
+double pair_ratio(std::uint32_t a, std::uint32_t b) {
+    using Pairs = std::array<std::array<double, STOKES_WAVELENGTHS>, STOKES_WAVELENGTHS>;
+    static const Pairs pairs = [] {
+        Pairs result;
+        for (std::uint32_t i = 0; i < result.size(); ++i)
+            for (std::uint32_t j = 0; j < result.size(); ++j) result[i][j] = joint_ratio({i, j});
+        return result;
+    }();
+    return pairs[a][b];
+}
+
 StratifiedWavelengths::StratifiedWavelengths(int first_nm, const std::vector<double>& expected)
     : first_nm_(first_nm), end_(expected.size()) {
     std::partial_sum(expected.begin(), expected.end(), end_.begin());

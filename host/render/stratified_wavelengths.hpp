@@ -24,6 +24,8 @@ inline constexpr std::array<double, STOKES_STRATA_LEVELS> level_shares = {1.0 / 
 // Expected number of ordered rows of different members of a set that lie in these strata (0 to 15, in any order), over
 // the product of each one's own expected count; in (0, 1], 0 for more than 16.
 double joint_ratio(std::vector<std::uint32_t> strata);
+// The same of two, looked up.
+double pair_ratio(std::uint32_t a, std::uint32_t b);
 
 class StratifiedWavelengths {
   public:

@@ -40,7 +40,7 @@ double pair_weight_nm(int first_nm, int last_nm) { return double(last_nm - first
 // Light at a stratified wavelength has its rarity already: of the pair's weight, 1/(m m joint_ratio), the emitted one's
 // share is left.
 double PassWavelengths::weight_nm(std::size_t ex, std::size_t em) const {
-    return stratified ? pair_weight_nm * rarity[em] / joint_ratio({strata[ex], strata[em]}) : pair_weight_nm;
+    return stratified ? pair_weight_nm * rarity[em] / pair_ratio(strata[ex], strata[em]) : pair_weight_nm;
 }
 
 }  // namespace stokes
