@@ -93,7 +93,7 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.device = device.description().name;
     stats.driver = device.description().platform + " " + device.description().driver;
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
-    stats.wavelengths = wavelengths_words[static_cast<std::size_t>(wavelengths_of(scene.render))];
+    stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;

@@ -55,7 +55,7 @@ struct RenderSettings {
 };
 
 // By importance, unless plain samplers are asked for, or the model `paper`, whose wavelengths are uniform.
-inline Wavelengths wavelengths_of(const RenderSettings& render) {
+inline Wavelengths chosen_wavelengths(const RenderSettings& render) {
     const bool plain = render.sampling == Sampling::plain || render.transport == Transport::paper;
     return render.wavelengths.value_or(plain ? Wavelengths::uniform : Wavelengths::importance);
 }
