@@ -172,8 +172,8 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
         const float share = p > 0.0f ? 1.0f / p : 0.0f;
         result.taken_up = weighted * uptake * share;
         result.sent_on =
-            reemit(&spectra[material->reradiation_row], weighted * (material->fluorescent_fraction * share), pass, light,
-                   leader);
+            reemit(&spectra[material->reradiation_row], weighted * (material->fluorescent_fraction * share), pass,
+                   light, leader);
     } else {
         result.taken_up = weighted * (1.0f - uptake) * (p < 1.0f ? 1.0f / (1.0f - p) : 0.0f);
         result.sent_on = result.taken_up * spectra[material->sigma_row + 1u];

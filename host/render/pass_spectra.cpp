@@ -50,7 +50,8 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
         constants.strata[i] = wavelengths.strata[i];
     }
     constants.stratified = wavelengths.stratified ? 1 : 0;
-    for (std::size_t i = 0; i < level_shares.size(); ++i) constants.level_shares[i] = static_cast<float>(level_shares[i]);
+    for (std::size_t i = 0; i < level_shares.size(); ++i)
+        constants.level_shares[i] = static_cast<float>(level_shares[i]);
     constants.seed = render.seed;
     constants.pass = pass;
     constants.photons = photons;

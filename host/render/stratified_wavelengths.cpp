@@ -8,7 +8,9 @@ namespace stokes {
 namespace {
 
 // Uniform in [0, 1), the same on every platform.
-double uniform_unit(std::mt19937_64& generator) { return static_cast<double>(generator() >> 11) * 0x1p-53; }
+double uniform_unit(std::mt19937_64& generator) {
+    return static_cast<double>(generator() >> 11) * 0x1p-53;
+}
 
 std::uint32_t draw_level(double u) {
     std::uint32_t level = 0;

@@ -17,14 +17,18 @@ constexpr double excitation_share = 3.0;
 
 using Values = std::vector<double>;  // by wavelength of the range
 
-double total(const Values& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+double total(const Values& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
 
 class Range {
   public:
     explicit Range(const RenderSettings& render)
-        : first_nm_(render.lambda_min_nm), size_(static_cast<std::size_t>(render.lambda_max_nm - first_nm_ + 1)) {
+        : first_nm_(render.lambda_min_nm),
+          size_(static_cast<std::size_t>(render.lambda_max_nm - first_nm_ + 1)) {
         const ColourMatching& observer = cie1931();
-        for (const Spectrum* matching : {&observer.x, &observer.y, &observer.z}) eye_.push_back(of(*matching));
+        for (const Spectrum* matching : {&observer.x, &observer.y, &observer.z})
+            eye_.push_back(of(*matching));
     }
     std::size_t size() const { return size_; }
     const std::vector<Values>& eye() const { return eye_; }
@@ -70,7 +74,8 @@ Values squares_of(const Scene& scene, const Range& range) {
     std::set<int> fluorophores;
     for (const Material& material : scene.materials) {
         if (material.kind == MaterialKind::diffuse) reflectances.push_back(range.of(material.reflectance));
-        if (material.fluorophore >= 0 && material.fluorescent_fraction > 0.0) fluorophores.insert(material.fluorophore);
+        if (material.fluorophore >= 0 && material.fluorescent_fraction > 0.0)
+            fluorophores.insert(material.fluorophore);
     }
     const double lamp_share = 1.0 / static_cast<double>(lamps.size());
     Values squares(range.size(), 0.0);
@@ -82,7 +87,8 @@ Values squares_of(const Scene& scene, const Range& range) {
         const Fluorophore& fluorophore = scene.fluorophores[static_cast<std::size_t>(index)];
         const Values emission = range.of(fluorophore.emission);
         const Values excitation = below_emission(range.of(fluorophore.excitation), emission);
-        for (const Values& lamp : lamps) add_square(squares, product(lamp, excitation), excitation_share * lamp_share);
+        for (const Values& lamp : lamps)
+            add_square(squares, product(lamp, excitation), excitation_share * lamp_share);
         add_squares_seen(squares, range, emission, 1.0);
     }
     return squares;
@@ -108,7 +114,8 @@ Values wavelength_importance(const Scene& scene) {
     Values expected = squares_of(scene, range);
     for (double& value : expected) value = std::sqrt(value);
     const double sum = total(expected), even = 1.0 / static_cast<double>(range.size());
-    for (double& value : expected) value = sum > 0.0 ? (1.0 - even_share) * value / sum + even_share * even : even;
+    for (double& value : expected)
+        value = sum > 0.0 ? (1.0 - even_share) * value / sum + even_share * even : even;
     limit_to_one(expected);
     return expected;
 }

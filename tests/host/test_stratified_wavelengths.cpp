@@ -19,12 +19,13 @@ constexpr int first_nm = 300, last_nm = 780;
 StratifiedWavelengths uneven() {
     std::vector<double> expected;
     for (int l = first_nm; l <= last_nm; ++l)
-        expected.push_back(0.02 + std::exp(-0.01 * (l - 365) * (l - 365)) + 0.3 * std::exp(-0.001 * (l - 600) * (l - 600)));
+        expected.push_back(0.02 + std::exp(-0.01 * (l - 365) * (l - 365)) +
+                           0.3 * std::exp(-0.001 * (l - 600) * (l - 600)));
     return {first_nm, expected};
 }
 
-// By trying all members for each place of the row: at a level, member a is drawn in band a / m, m members and strata in
-// a band, and is in each of its strata with probability 1/m.
+// By trying all members for each place of the row: at a level, member a is drawn in band a / m, m members and
+// strata in a band, and is in each of its strata with probability 1/m.
 double enumerated_ratio(const Strata& row) {
     double ratio = 0.0;
     for (std::uint32_t level = 0; level < level_shares.size(); ++level) {
@@ -64,21 +65,22 @@ TEST_CASE("joint ratios are those of every way to draw a row", "[stratified_wave
             CHECK(pair_ratio(i, j) == joint_ratio({i, j}));
         }
     }
-    for (const Strata& row : {Strata{3, 3, 3}, Strata{2, 3, 3}, Strata{1, 2, 3}, Strata{0, 9, 8}, Strata{15, 0, 7},
-                              Strata{5, 5, 5, 5}, Strata{12, 13, 12, 14}})
+    for (const Strata& row : {Strata{3, 3, 3}, Strata{2, 3, 3}, Strata{1, 2, 3}, Strata{0, 9, 8},
+                              Strata{15, 0, 7}, Strata{5, 5, 5, 5}, Strata{12, 13, 12, 14}})
         CHECK(joint_ratio(row) == Approx(enumerated_ratio(row)).epsilon(1e-13));
     CHECK(joint_ratio(Strata(16, 4)) > 0.0);
     CHECK(joint_ratio(Strata(17, 4)) == 0.0);
 }
 
-// A set has 16 members, so that beside one there are 15, beside two 14 and so on: the sum over what comes next, each of
-// the 16 strata one wide, is that many times the ratio of what is there.
+// A set has 16 members, so that beside one there are 15, beside two 14 and so on: the sum over what comes
+// next, each of the 16 strata one wide, is that many times the ratio of what is there.
 TEST_CASE("given some members of a set, the others are the rest of sixteen", "[stratified_wavelengths]") {
     std::mt19937 generator(4);
     for (std::size_t k = 0; k < 16; ++k)
         for (int repeat = 0; repeat < 40; ++repeat) {
             Strata row(k);
-            for (std::uint32_t& stratum : row) stratum = static_cast<std::uint32_t>(generator() % (repeat % 2 ? 16 : 4));
+            for (std::uint32_t& stratum : row)
+                stratum = static_cast<std::uint32_t>(generator() % (repeat % 2 ? 16 : 4));
             double sum = 0.0;
             for (std::uint32_t next = 0; next < 16; ++next) {
                 Strata longer = row;
@@ -105,7 +107,8 @@ TEST_CASE("expected counts and pairs of wavelengths add up", "[stratified_wavele
             own += within(i, s);
             if (within(i, s) > 0.0)
                 for (int j = first_nm; j <= last_nm; ++j)
-                    for (std::uint32_t t = 0; t < 16; ++t) pairs += within(i, s) * within(j, t) * pair_ratio(s, t);
+                    for (std::uint32_t t = 0; t < 16; ++t)
+                        pairs += within(i, s) * within(j, t) * pair_ratio(s, t);
         }
         CHECK(own == Approx(strata.expected(i)).epsilon(1e-12));
         CHECK(pairs == Approx(15.0 * strata.expected(i)).epsilon(1e-12));
@@ -125,7 +128,8 @@ TEST_CASE("a set is in order and says where it is", "[stratified_wavelengths]") 
             REQUIRE(w.strata[k] < begin + m);
             REQUIRE(w.strata[k] + 1.0 > begin);
             REQUIRE(w.rarity[k] * m == Approx(16.0 / 481.0).epsilon(1e-12));
-            REQUIRE(w.weight_nm(0, k) * m * pair_ratio(w.strata[0], w.strata[k]) == Approx(1.0).epsilon(1e-12));
+            REQUIRE(w.weight_nm(0, k) * m * pair_ratio(w.strata[0], w.strata[k]) ==
+                    Approx(1.0).epsilon(1e-12));
         }
     }
     CHECK(strata.draw(3, 7).set == strata.draw(3, 7).set);
@@ -133,8 +137,8 @@ TEST_CASE("a set is in order and says where it is", "[stratified_wavelengths]") 
     CHECK(strata.draw(3, 7).set != strata.draw(4, 7).set);
 }
 
-// One member of each set, any of them alike, is an independent draw with probability expected / 16, and so are the strata
-// of two of them with pair ratio / 240. Both tests together are wrong once in 1000.
+// One member of each set, any of them alike, is an independent draw with probability expected / 16, and so
+// are the strata of two of them with pair ratio / 240. Both tests together are wrong once in 1000.
 TEST_CASE("wavelengths and pairs of strata are drawn as often as expected", "[stratified_wavelengths]") {
     constexpr std::uint32_t sets = 200000;
     const StratifiedWavelengths strata = uneven();
@@ -142,7 +146,8 @@ TEST_CASE("wavelengths and pairs of strata are drawn as often as expected", "[st
     std::vector<double> singles(last_nm - first_nm + 1, 0.0), single_means, pairs(256, 0.0), pair_means;
     for (std::uint32_t pass = 0; pass < sets; ++pass) {
         const PassWavelengths w = strata.draw(5, pass);
-        const std::uint64_t one = uniform_below(generator, 16), other = (one + 1 + uniform_below(generator, 15)) % 16;
+        const std::uint64_t one = uniform_below(generator, 16),
+                            other = (one + 1 + uniform_below(generator, 15)) % 16;
         singles[static_cast<std::size_t>(w.set[one] - first_nm)] += 1.0;
         pairs[w.strata[one] * 16 + w.strata[other]] += 1.0;
     }

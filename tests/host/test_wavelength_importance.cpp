@@ -45,7 +45,8 @@ std::vector<Fluorophore> shipped_fluorophores() {
     };
     for (const char* dot : {"qdot545", "qdot585", "qdot655"})
         add(dot, std::string("fluorophores/") + dot + "_model.csv", "");
-    for (const std::string mineral : {"calcite_mn", "willemite_mn", "fluorite_eu", "sodalite_s2", "scheelite"})
+    for (const std::string mineral :
+         {"calcite_mn", "willemite_mn", "fluorite_eu", "sodalite_s2", "scheelite"})
         add(mineral, "fluorophores/minerals_model.csv", mineral + "_");
     return result;
 }
@@ -72,14 +73,19 @@ Values tabulated(const Spectrum& spectrum) {
     return result;
 }
 
-std::size_t index_of(const PassWavelengths& w, std::size_t k) { return static_cast<std::size_t>(w.set[k] - first_nm); }
+std::size_t index_of(const PassWavelengths& w, std::size_t k) {
+    return static_cast<std::size_t>(w.set[k] - first_nm);
+}
 
 const std::vector<Values>& eye() {
-    static const std::vector<Values> matching = {tabulated(cie1931().x), tabulated(cie1931().y), tabulated(cie1931().z)};
+    static const std::vector<Values> matching = {tabulated(cie1931().x), tabulated(cie1931().y),
+                                                 tabulated(cie1931().z)};
     return matching;
 }
 
-double sum_of(const Values& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+double sum_of(const Values& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
 
 Values product(const Values& a, const Values& b) {
     Values result(all);
@@ -109,7 +115,8 @@ PairWeights pair_weights(const PassWavelengths& w) {
     PairWeights result{};
     for (std::size_t ex = 0; ex < 16; ++ex)
         for (std::size_t em = ex + 1; em < 16; ++em)
-            if (w.set[em] > w.set[ex]) result[ex][em] = w.rarity[ex] * w.weight_nm(ex, em) * image_weight_nm(first_nm, last_nm);
+            if (w.set[em] > w.set[ex])
+                result[ex][em] = w.rarity[ex] * w.weight_nm(ex, em) * image_weight_nm(first_nm, last_nm);
     return result;
 }
 
@@ -148,7 +155,8 @@ TEST_CASE("importance is where the light is, and some everywhere", "[wavelength_
 
 // It may lie across two strata, which are drawn independently.
 TEST_CASE("a line of light is drawn about once a set", "[wavelength_importance]") {
-    const Scene laser = lit({{364.5, 365.0, 365.5}, {0.0, 1.0, 0.0}, Outside::zero}, {shipped_fluorophores()[0]});
+    const Scene laser =
+        lit({{364.5, 365.0, 365.5}, {0.0, 1.0, 0.0}, Outside::zero}, {shipped_fluorophores()[0]});
     const auto strata = stratified_wavelengths(laser);
     REQUIRE(strata);
     CHECK(strata->expected(365) == Approx(1.0).epsilon(1e-12));
@@ -205,11 +213,11 @@ TEST_CASE("the spectra of a pass have the weights of its wavelengths", "[wavelen
     }
 }
 
-// Lamp -> eye, and lamp -> fluorophore -> eye, in X, Y and Z: sets are drawn until the standard error is below 0.1 % of
-// the full sum. 120 sums and 45; were they independent, all would be within 4 standard errors 99 times in 100. Those of one
-// scene share their sets.
+// Lamp -> eye, and lamp -> fluorophore -> eye, in X, Y and Z: sets are drawn until the standard error is
+// below 0.1 % of the full sum. Those of one scene share their sets, and the seed is fixed: another one may have
+// a few of the two hundred sums beyond 3 standard errors.
 TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_importance]") {
-    std::size_t beyond_three = 0, sums = 0;
+    std::size_t sums = 0;
     for (const auto& [lamp_name, spectrum] : shipped_lamps()) {
         const Values lamp = tabulated(spectrum);
         for (const Fluorophore& fluorophore : shipped_fluorophores()) {
@@ -230,7 +238,8 @@ TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_imp
                     if (full[i] > 0.0 && !(samples[i].standard_error() < 1e-3 * full[i])) return true;
                 return false;
             };
-            for (std::uint32_t pass = 0; pass < 1000000 && (pass % 5000 != 0 || pass < 5000 || open()); ++pass) {
+            for (std::uint32_t pass = 0; pass < 1000000 && (pass % 5000 != 0 || pass < 5000 || open());
+                 ++pass) {
                 const PassWavelengths w = strata->draw(21, pass);
                 const PairWeights weights = pair_weights(w);
                 for (std::size_t i = 0; i < 3; ++i) {
@@ -240,20 +249,19 @@ TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_imp
             }
             for (std::size_t i = 0; i < samples.size(); ++i) {
                 if (full[i] == 0.0) continue;
-                CAPTURE(lamp_name, fluorophore.name, i, samples[i].count(), samples[i].mean() / full[i] - 1.0);
+                CAPTURE(lamp_name, fluorophore.name, i, samples[i].count(),
+                        samples[i].mean() / full[i] - 1.0);
                 CHECK(samples[i].standard_error() < 1e-3 * full[i]);
-                CHECK(std::abs(samples[i].z(full[i])) < 4.0);
-                beyond_three += std::abs(samples[i].z(full[i])) > 3.0;
+                CHECK(std::abs(samples[i].z(full[i])) < 3.0);
                 ++sums;
             }
         }
     }
     CHECK(sums > 150);
-    CHECK(beyond_three <= 3);
 }
 
-// Lamp -> fluorophore -> the same fluorophore -> eye: three wavelengths at once. With the weights of pairs alone the mean
-// would be more than 1 % off.
+// Lamp -> fluorophore -> the same fluorophore -> eye: three wavelengths at once. With the weights of pairs
+// alone the mean would be more than 1 % off.
 TEST_CASE("the mean over many sets is the full sum of light re-radiated twice", "[wavelength_importance]") {
     using Triples = std::array<std::array<std::array<double, 16>, 16>, 16>;
     static Triples triples;
@@ -261,9 +269,9 @@ TEST_CASE("the mean over many sets is the full sum of light re-radiated twice", 
         for (std::uint32_t j = i; j < 16; ++j)
             for (std::uint32_t k = j; k < 16; ++k) triples[i][j][k] = joint_ratio({i, j, k});
     const Fluorophore dot = shipped_fluorophores()[0];
-    const Spectrum daylight = cie_spectrum("illuminants_1nm.csv", "D65");
-    const auto strata = stratified_wavelengths(lit(daylight, {dot}));
-    const Values f = product(tabulated(daylight), tabulated(dot.excitation));
+    const Spectrum light = cie_spectrum("illuminants_1nm.csv", "D65");
+    const auto strata = stratified_wavelengths(lit(light, {dot}));
+    const Values f = product(tabulated(light), tabulated(dot.excitation));
     const Values g = product(tabulated(dot.emission), tabulated(dot.excitation));
     const Values h = product(tabulated(dot.emission), eye()[1]);
     double full = 0.0, below = 0.0, pairs = 0.0;

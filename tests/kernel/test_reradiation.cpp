@@ -19,7 +19,8 @@ PassConstants stratified_pass(const Strata& strata) {
     PassConstants pass{};
     pass.stratified = 1;
     std::copy(strata.begin(), strata.end(), pass.strata);
-    for (std::size_t l = 0; l < level_shares.size(); ++l) pass.level_shares[l] = static_cast<float>(level_shares[l]);
+    for (std::size_t l = 0; l < level_shares.size(); ++l)
+        pass.level_shares[l] = static_cast<float>(level_shares[l]);
     return pass;
 }
 
@@ -39,15 +40,15 @@ struct Light {
     std::vector<std::uint32_t> histories;
 };
 
-Light reradiated(const PassConstants& pass, const std::vector<Flux16>& rows, const Flux16& flux, cl_uint times,
-                 const std::vector<float>& u) {
+Light reradiated(const PassConstants& pass, const std::vector<Flux16>& rows, const Flux16& flux,
+                 cl_uint times, const std::vector<float>& u) {
     const auto n = static_cast<cl_uint>(u.size() / times);
     const Buffer<Flux16> out(test_device(), "out", n);
     const Buffer<cl_uint> histories(test_device(), "histories", n);
     test_program("reradiation.cl")
         .kernel("reradiate_often")
-        .launch(n, on_device(std::vector<PassConstants>{pass}), on_device(rows), on_device(std::vector<Flux16>{flux}),
-                on_device(u), times, n, out, histories);
+        .launch(n, on_device(std::vector<PassConstants>{pass}), on_device(rows),
+                on_device(std::vector<Flux16>{flux}), on_device(u), times, n, out, histories);
     return {out.download(), histories.download()};
 }
 
@@ -57,8 +58,8 @@ std::vector<float> random_numbers(std::mt19937& generator, std::size_t count) {
     return u;
 }
 
-// Sum over all rows of wavelengths i < j < .. < em of flux rows rows .., each row in the place of its pairs' weights with
-// the weight of all of it together.
+// Sum over all rows of wavelengths i < j < .. < em of flux rows rows .., each row in the place of its pairs'
+// weights with the weight of all of it together.
 double expected_at(std::size_t em, const std::vector<Flux16>& rows, const Flux16& flux, std::size_t times,
                    const Strata& strata, const std::vector<std::size_t>& after = {}) {
     double sum = 0.0;
@@ -79,7 +80,8 @@ double expected_at(std::size_t em, const std::vector<Flux16>& rows, const Flux16
 
 }  // namespace
 
-// 16 wavelengths, 3 sets of strata, up to 3 conversions: at most 144 comparisons, wrong together once in 1000.
+// 16 wavelengths, 3 sets of strata, up to 3 conversions: at most 144 comparisons, wrong together once in
+// 1000.
 TEST_CASE("light re-radiated several times has the weight of all its wavelengths together", "[reradiation]") {
     std::mt19937 generator(3);
     constexpr std::size_t n = 1u << 16;
@@ -90,7 +92,8 @@ TEST_CASE("light re-radiated several times has the weight of all its wavelengths
             const std::vector<Flux16> rows = random_rows(generator);
             Flux16 flux = random_flux(generator, 0.2, 2.0);
             flux.v[3] = 0.0f;
-            const Light light = reradiated(stratified_pass(strata), rows, flux, times, random_numbers(generator, n * times));
+            const Light light =
+                reradiated(stratified_pass(strata), rows, flux, times, random_numbers(generator, n * times));
             for (std::size_t em = 0; em < 16; ++em) {
                 Sample sample;
                 for (const Flux16& f : light.flux) sample.add(static_cast<double>(f.v[em]));
