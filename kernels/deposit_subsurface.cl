@@ -8,6 +8,7 @@
 #include "lib/light_sum.clh"
 #include "lib/normal.clh"
 #include "lib/power_table.clh"
+#include "lib/reradiation.clh"
 #include "lib/retrace.clh"
 #include "shared/material.h"
 #include "shared/photon.h"
@@ -131,13 +132,14 @@ typedef struct Collision {
 } Collision;
 
 // Model `conserving`, and surface fluorescence. flux arrives; each wavelength is weighted for the way and for the branch
-// that were drawn (lib/first_collision.clh). The re-radiation rows include the excitation E.
+// that were drawn (lib/first_collision.clh). The re-radiation rows include the excitation E. leader: of reemit().
 FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global const float16* spectra,
-                               bool fluorescent, float way_mm, float16 flux) {
+                               __global const PassConstants* pass, bool fluorescent, float way_mm, float16 flux,
+                               LightHistory light, __private uint* leader) {
     Collision result;
     if (material->medium == STOKES_NONE) {
         result.taken_up = flux * spectra[material->excitation_row];
-        result.sent_on = reradiate(&spectra[material->reradiation_row], flux);
+        result.sent_on = reemit(&spectra[material->reradiation_row], flux, pass, light, leader);
         return result;
     }
     const float16 weighted = flux * collision_weights(spectra[material->sigma_row], way_mm);
@@ -147,7 +149,8 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
         const float share = p > 0.0f ? 1.0f / p : 0.0f;
         result.taken_up = weighted * uptake * share;
         result.sent_on =
-            reradiate(&spectra[material->reradiation_row], weighted * (material->fluorescent_fraction * share));
+            reemit(&spectra[material->reradiation_row], weighted * (material->fluorescent_fraction * share), pass,
+                   light, leader);
     } else {
         result.taken_up = weighted * (1.0f - uptake) * (p < 1.0f ? 1.0f / (1.0f - p) : 0.0f);
         result.sent_on = result.taken_up * spectra[material->sigma_row + 1u];
@@ -160,7 +163,7 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
 //   pass's wavelengths, or with STOKES_SAMPLER_INTEGRATED what integrate_power wrote for each exit; flux of the
 //   arriving photons [W/nm].
 // Writes: the map's slot round.first_slot + i: flux that leaves there (`paper`: eq. 3, 4 or 5), ExitPoint.kept and
-//   .event_light, ledgers (stored, dropped deposits).
+//   .event_light, ledgers (stored, dropped deposits, the leader of re-emitted light).
 __kernel void deposit_exits(EventRound round, __global const PassConstants* pass,
                             __global const MaterialRecord* materials, __global const float16* spectra,
                             __global const TableShape* table_shapes, __global const float16* table16,
@@ -173,18 +176,21 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
     __global PathLedger* ledger = &ledgers[exit_point->path];
     const bool found = exit_point->r_mm >= 0.0f;
     const bool fluorescent = round.component == STOKES_MAP_FLUORESCENCE;
-    const float chain = pass->chain[min(ledger->conversions, (uint)STOKES_WAVELENGTHS - 1u)];
+    LightHistory light = {ledger->conversions, ledger->history, 0.0f};
+    if (fluorescent && pass->stratified != 0u)  // the same for both exits of an event
+        light.u = random4(pass->seed, pass->pass, exit_point->path, round.event, RNG_REEMIT).a;
+    uint leader = STOKES_NONE;
 
     float16 leaving = flux[exit_point->path];
     float2 event_light = (float2)(0.0f);
     if (round.sampler == STOKES_SAMPLER_PAPER || round.sampler == STOKES_SAMPLER_INTEGRATED) {
         if (fluorescent) {
-            leaving = reradiate(&spectra[material->reradiation_row], leaving) * chain;
+            leaving = reemit(&spectra[material->reradiation_row], leaving, pass, light, &leader);
             event_light = light_of(leaving, pass);
         }
     } else {
-        Collision collision = collide(material, spectra, fluorescent, exit_point->way_mm, leaving);
-        if (fluorescent) collision.sent_on *= chain;
+        const Collision collision =
+            collide(material, spectra, pass, fluorescent, exit_point->way_mm, leaving, light, &leader);
         event_light = light_of(
             round.sampler == STOKES_SAMPLER_DIRECT ? collision.sent_on : collision.taken_up, pass);
         leaving = collision.sent_on * exit_point->scale;
@@ -196,6 +202,7 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
     else if (material->medium != STOKES_NONE)
         leaving *= power_table_at(table16, table_shapes[material->medium * 3u + round.component],
                                   fabs(exit_point->r_mm), exit_point->row);
+    if (fluorescent) ledger->leader = leader;
     const float2 kept = light_of(leaving, pass);
     exit_point->kept = (LightSum){kept.x, kept.y};
     exit_point->event_light = (LightSum){event_light.x, event_light.y};
@@ -259,6 +266,7 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - going_on);
     ledger->conversions += 1u;
+    ledger->history = with_leader(ledger->history, ledger->leader);
     flux[path] = carried;
     go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(exit_point.x, exit_point.y, exit_point.z),
           (float3)(exit_point.nx, exit_point.ny, exit_point.nz), going_on, draw.b, draw.c);
@@ -361,7 +369,10 @@ __kernel void retrace_exits(EventRound round, __global const PassConstants* pass
     const float16 carried = (first ? first_flux[slot] : second_flux[slot]) * raised;
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - missed - going_on);
-    if (fluorescent) ledger->conversions += 1u;
+    if (fluorescent) {
+        ledger->conversions += 1u;
+        ledger->history = with_leader(ledger->history, ledger->leader);
+    }
     flux[path] = carried;
     go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
           (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);

@@ -35,7 +35,7 @@ extern "C" void catch_signal(int signal) {
 
 struct RenderOptions {
     std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
-    std::string reference_file, csv_file;
+    std::string reference_file, csv_file, sampling, wavelengths;
     int passes = 0, every = 0;
     DeviceFlags device;
     std::int64_t photons = 0;
@@ -58,6 +58,12 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
         throw InputError("--no-tables: expected transport \"paper\", got \"" +
                          transport_words[static_cast<std::size_t>(render.transport)] + "\"");
     if (options.no_tables) render.tables = false;
+    if (command.count("--sampling")) {
+        render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
+        render.wavelengths.reset();
+    }
+    if (command.count("--wavelengths"))
+        render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -81,6 +87,7 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.scene", stats.scene},
             {"stokes.device", stats.device},
             {"stokes.transport", stats.transport},
+            {"stokes.wavelengths", stats.wavelengths},
             {"stokes.passes", static_cast<int>(stats.passes)},
             {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
             {"stokes.seed", static_cast<double>(stats.seed)},
@@ -102,6 +109,7 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.ray_kernel = ray_shape_words[static_cast<std::size_t>(device.ray_shape())];
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
     stats.tables = scene.render.transport != Transport::walk && scene.render.tables;
+    stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -261,6 +269,14 @@ void add_render_command(CLI::App& app) {
         ->check(word_of(transport_words));
     command->add_flag("--no-tables", options->no_tables,
                       "Model paper: every photon integrates its power itself, in place of the tables");
+    command->add_option("--sampling", options->sampling, "Plain samplers, or those with the least noise; default: best")
+        ->type_name("KIND")
+        ->check(word_of(sampling_words));
+    command
+        ->add_option("--wavelengths", options->wavelengths,
+                     "How a pass draws its wavelengths; default: importance, for transport paper uniform")
+        ->type_name("HOW")
+        ->check(word_of(wavelengths_words));
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

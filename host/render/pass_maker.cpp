@@ -5,6 +5,8 @@
 
 #include "host/subsurface/paper_transport.hpp"
 
+#include "host/render/wavelength_importance.hpp"
+
 namespace stokes {
 
 namespace {
@@ -18,7 +20,10 @@ GreenResampler::Sixteen sixteen(const Flux16& row) {
 }  // namespace
 
 PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene& on_device)
-    : scene_(scene), on_device_(on_device), wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
+    : scene_(scene),
+      on_device_(on_device),
+      strata_(stratified_wavelengths(scene)),
+      wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
     buffers_.constants = Buffer<PassConstants>(device, "pass constants", 1);
     buffers_.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count());
     buffers_.photon_flux = Buffer<Flux16>(device, "photon flux of the lights", scene.lights.size());
@@ -32,7 +37,7 @@ PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene
 }
 
 void PassMaker::make(std::uint32_t pass, std::uint32_t photons) {
-    make(pass_wavelengths(scene_.render, pass), pass, photons);
+    make(strata_ ? strata_->draw(scene_.render.seed, pass) : pass_wavelengths(scene_.render, pass), pass, photons);
 }
 
 void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons) {

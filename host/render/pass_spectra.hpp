@@ -30,22 +30,15 @@ struct SpectraLayout {
     std::uint32_t materials, fluorophores, media, textures;
 };
 
-// The wavelengths of a pass, and what keeps sums over those that light is re-radiated from unbiased.
-struct PassWavelengths {
-    WavelengthSet set;
-    double pair_weight_nm;  // of a first re-radiation
-    // Factor on it for light that has been re-radiated k times before; [0] is 1.
-    std::array<double, STOKES_WAVELENGTHS> chain;
-};
-
 // Those of a render's pass: drawn uniformly, PHYSICS section 2.
 PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass);
 
 struct PassSpectra {
     PassConstants constants;           // all but offset_mm
     std::vector<Flux16> rows;          // SpectraLayout::row_count() rows
-    std::vector<Flux16> photon_flux;   // per light: flux of one photon [W/nm], all lights' probabilities included
-    std::vector<Flux16> radiance;      // per light: radiance of its surface [W mm^-2 sr^-1 nm^-1], 0 for beams
+    // Per light, times the wavelengths' rarity: flux of one photon [W/nm], all lights' probabilities included, and
+    // radiance of its surface [W mm^-2 sr^-1 nm^-1], 0 for beams.
+    std::vector<Flux16> photon_flux, radiance;
 };
 
 // Chance that a photon starts at each light: proportional to its power in the render's wavelength range.
@@ -64,6 +57,9 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
 // The others: quantum yield E(ex) f(em) ex/em pair weight, f the emission as photons per nm, its sum over 300..830 nm
 // one (PHYSICS section 4, without c).
 std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
-                                                        const WavelengthSet& set, double pair_weight);
+                                                        const PassWavelengths& wavelengths);
+// The same where all pairs weigh alike.
+std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
+                                                        const WavelengthSet& set, double pair_weight_nm);
 
 }  // namespace stokes

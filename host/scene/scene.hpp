@@ -39,6 +39,14 @@ enum class Transport { paper, conserving, walk };
 // As scene files and the command line spell them, in the order of Transport.
 inline const std::vector<std::string> transport_words = {"paper", "conserving", "walk"};
 
+// How a pass draws its wavelengths: PHYSICS section 2. As scene files and the command line spell them, in order.
+enum class Wavelengths { uniform, importance };
+inline const std::vector<std::string> wavelengths_words = {"uniform", "importance"};
+
+// Which samplers a render has where it does not name them one by one: the plain ones, or those with the least noise.
+enum class Sampling { plain, best };
+inline const std::vector<std::string> sampling_words = {"plain", "best"};
+
 inline constexpr std::int64_t most_photons_per_pass = 0x10000000;
 
 struct RenderSettings {
@@ -52,7 +60,15 @@ struct RenderSettings {
     Transport transport = Transport::conserving;
     bool tables = true;  // paper: false: no power tables, every photon integrates eq. 3-5 itself
     bool first_collision_only = false;  // walk: fluorophores take light up at its first collision only
+    Sampling sampling = Sampling::best;
+    std::optional<Wavelengths> wavelengths;  // none: by sampling and transport
 };
+
+// By importance, unless plain samplers are asked for, or the model `paper`, whose wavelengths are uniform.
+inline Wavelengths chosen_wavelengths(const RenderSettings& render) {
+    const bool plain = render.sampling == Sampling::plain || render.transport == Transport::paper;
+    return render.wavelengths.value_or(plain ? Wavelengths::uniform : Wavelengths::importance);
+}
 
 // sigma_s and sigma_a [1/mm] with the scene's scale factors already applied.
 struct Medium {

@@ -23,6 +23,10 @@ RenderSettings read_render_settings(const JsonCursor& render) {
         render.integer_or("seed", s.seed, 0, std::numeric_limits<std::uint32_t>::max()));
     s.lambda_min_nm = static_cast<int>(render.integer_or("lambda_min_nm", s.lambda_min_nm, 300, 830));
     s.lambda_max_nm = static_cast<int>(render.integer_or("lambda_max_nm", s.lambda_max_nm, 300, 830));
+    if (const auto sampling = render.find("sampling"))
+        s.sampling = static_cast<Sampling>(sampling->choice(sampling_words));
+    if (const auto wavelengths = render.find("wavelengths"))
+        s.wavelengths = static_cast<Wavelengths>(wavelengths->choice(wavelengths_words));
     if (s.lambda_max_nm - s.lambda_min_nm + 1 < wavelengths_per_pass) {
         render.fail(fmt::format(
             "expected at least {} whole wavelengths from lambda_min_nm to lambda_max_nm, got {} to {}",

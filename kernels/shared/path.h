@@ -49,7 +49,8 @@ typedef struct PathLedger {
     float reference_flux;        // mean flux at emission [W/nm], the measure for roulette
     unsigned int conversions;    // how often its light has been re-radiated
     unsigned int reflections;    // how often it was reflected specularly
-    unsigned int pad[2];
+    unsigned int history;        // stratified wavelengths: bit k: its light was taken up at the pass's wavelength k
+    unsigned int leader;         // the one that the event in progress takes it up at, or STOKES_NONE
 } PathLedger;
 STOKES_ASSERT_SIZE(PathLedger, 96);
 

@@ -92,6 +92,8 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
              {"render " + sphere_scene + " --size 0x4" + out, "--size"},
              {"render " + sphere_scene + " --alpha 2" + out, "alpha"},
              {"render " + sphere_scene + " --radius 0" + out, "radius"},
+             {"render " + sphere_scene + " --wavelengths some" + out, "--wavelengths"},
+             {"render " + sphere_scene + " --sampling rich" + out, "--sampling"},
              {"render " + sphere_scene + " --alpha nan" + out, "--alpha: expected a number"},
              {"render " + sphere_scene + " --radius nan" + out, "--radius: expected a number"},
              {"render " + sphere_scene + " --exposure nan" + out, "--exposure: expected a number"},

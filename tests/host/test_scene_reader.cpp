@@ -60,6 +60,8 @@ TEST_CASE("A scene's settings, media and materials arrive as written") {
     CHECK(scene.render.passes == 4);
     CHECK(scene.render.photons_per_pass == 1000);
     CHECK(scene.render.alpha == 0.5);
+    CHECK(scene.render.sampling == Sampling::best);
+    CHECK_FALSE(scene.render.wavelengths);
     CHECK(scene.render.radius_mm == 2.0);
     CHECK(scene.render.seed == 9);
     CHECK(scene.film.width == 8);

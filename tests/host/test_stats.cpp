@@ -18,6 +18,7 @@ RenderStats example() {
     stats.ray_kernel = "avx2";
     stats.transport = "walk";
     stats.tables = false;
+    stats.wavelengths = "importance";
     stats.passes = 12;
     stats.seed = 4000000000u;
     stats.width = 640;
@@ -59,6 +60,7 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     CHECK(json.at("transport") == "walk");
     CHECK(json.at("ray_kernel") == "avx2");
     CHECK(json.at("tables") == false);
+    CHECK(json.at("wavelengths") == "importance");
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
     CHECK(json.at("photons_emitted") == 12000000000ull);

@@ -67,11 +67,13 @@ using namespace stokes;
         F(PassConstants, to_z) F(PassConstants, chain) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
         F(PassConstants, offset_mm) F(PassConstants, transport) F(PassConstants, first_collision_only) \
-        F(PassConstants, pad0) F(PassConstants, pad1) \
+        F(PassConstants, stratified) F(PassConstants, pad0) F(PassConstants, strata) \
+        F(PassConstants, level_shares) F(PassConstants, pad1) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \
         F(PathLedger, stored) F(PathLedger, fate) F(PathLedger, missed_exits) F(PathLedger, rays) \
-        F(PathLedger, reference_flux) F(PathLedger, conversions) F(PathLedger, reflections) F(PathLedger, pad) \
+        F(PathLedger, reference_flux) F(PathLedger, conversions) F(PathLedger, reflections) \
+        F(PathLedger, history) F(PathLedger, leader) \
     S(LightSum) F(LightSum, energy) F(LightSum, photons) \
     S(LedgerSums) F(LedgerSums, light) F(LedgerSums, fates) F(LedgerSums, missed_exits) F(LedgerSums, rays) \
         F(LedgerSums, reflections) F(LedgerSums, pad) \
