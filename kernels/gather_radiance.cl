@@ -1,8 +1,9 @@
 // What the camera rays see: light that surfaces emit, and the density estimate over the photon maps.
-// Surfaces have a front only, the side of their outward normal; their back is black.
+// Surfaces have a front only, the side of their outward normal; their back is black, unless they are two-sided.
 #include "lib/fresnel.clh"
 #include "lib/gather.clh"
 #include "lib/inline.clh"
+#include "lib/surface_normal.clh"
 #include "lib/tiles.clh"
 #include "shared/camera.h"
 #include "shared/material.h"
@@ -59,8 +60,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
     if (hit.triangle != STOKES_NONE) {
         const Triangle t = triangles[hit.triangle];
         const ShapeRecord shape = shapes[t.shape];
-        const float3 normal =
-            normalize(cross((float3)(t.e1x, t.e1y, t.e1z), (float3)(t.e2x, t.e2y, t.e2z)));
+        const float3 normal = seen_normal(t, (float3)(rays[i].dx, rays[i].dy, rays[i].dz));
         point.x = t.v0x + hit.u * t.e1x + hit.v * t.e2x;
         point.y = t.v0y + hit.u * t.e1y + hit.v * t.e2y;
         point.z = t.v0z + hit.u * t.e1z + hit.v * t.e2z;

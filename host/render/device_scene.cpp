@@ -206,7 +206,7 @@ std::vector<Triangle> scene_triangles(const Scene& scene) {
             const glm::vec3 a = shape.mesh.positions_mm[t.x];
             const glm::vec3 e1 = shape.mesh.positions_mm[t.y] - a, e2 = shape.mesh.positions_mm[t.z] - a;
             triangles.push_back({a.x, a.y, a.z, static_cast<std::uint32_t>(s), e1.x, e1.y, e1.z,
-                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z, 0});
+                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z, shape.two_sided ? 1u : 0u});
         }
     }
     return triangles;

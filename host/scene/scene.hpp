@@ -85,6 +85,7 @@ struct Shape {
     int material = -1;
     int body = -1;
     int light = -1;  // index into Scene::lights when this shape is the surface of an emitter
+    bool two_sided = false;  // the back is like the front, else black; opaque materials only
     Mesh mesh;
 };
 

@@ -65,6 +65,14 @@ const ObjectKeys shape_prism{
 const ObjectKeys shape_cylinder{"shape_cylinder",
                                 {"type", "material", "radius_mm", "height_mm"},
                                 {"name", "body", "transform", "segments"}};
+const ObjectKeys shape_mask{"shape_mask",
+                            {"type", "material", "width_mm", "height_mm", "file"},
+                            {"name", "body", "transform", "threshold", "invert"}};
+const ObjectKeys shape_tiles{
+    "shape_tiles", {"type", "materials", "columns", "rows", "size_mm"}, {"name", "transform"}};
+const ObjectKeys shape_sectors{"shape_sectors",
+                               {"type", "materials", "radius_mm", "height_mm"},
+                               {"name", "transform", "segments", "start_deg"}};
 
 const ObjectKeys transform_scale{"transform_scale", {"scale"}, {}};
 const ObjectKeys transform_rotate{"transform_rotate", {"rotate_axis", "angle_deg"}, {}};
@@ -99,6 +107,9 @@ std::vector<ObjectKeys> all_object_keys() {
             shape_disk,
             shape_prism,
             shape_cylinder,
+            shape_mask,
+            shape_tiles,
+            shape_sectors,
             transform_scale,
             transform_rotate,
             transform_translate};

@@ -20,7 +20,7 @@
 typedef struct GatherPoint {
     float x, y, z;          // [mm]
     unsigned int pixel;     // y * width + x
-    float nx, ny, nz;       // outward geometric normal, unit length
+    float nx, ny, nz;       // geometric normal on the side that is seen, unit length
     unsigned int material;  // index into the MaterialRecord buffer
     unsigned int maps;      // bit STOKES_MAP_*: photons of this map count; 0: nothing to gather
     // Factor on the density estimate: MaterialRecord.exit_scale where the surface reflects, else 1 (collect_points),

@@ -68,7 +68,7 @@ STOKES_ASSERT_SIZE(LedgerSums, 112);
 typedef struct SurfacePoint {
     float x, y, z;          // [mm]
     unsigned int material;  // index into the MaterialRecord buffer
-    float nx, ny, nz;       // geometric normal, outward, unit length
+    float nx, ny, nz;       // geometric normal on the side that was met, unit length
     unsigned int body;
 } SurfacePoint;
 STOKES_ASSERT_SIZE(SurfacePoint, 32);

@@ -93,7 +93,7 @@ using namespace stokes;
         F(Probe, body) \
     S(Triangle) F(Triangle, v0x) F(Triangle, v0y) F(Triangle, v0z) F(Triangle, shape) F(Triangle, e1x) \
         F(Triangle, e1y) F(Triangle, e1z) F(Triangle, body) F(Triangle, e2x) F(Triangle, e2y) \
-        F(Triangle, e2z) F(Triangle, pad)
+        F(Triangle, e2z) F(Triangle, two_sided)
 // clang-format on
 
 namespace {
