@@ -79,7 +79,7 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
     };
     for (const Case& c : std::vector<Case>{
              {"", "subcommand"},
-             {"frobnicate", "\"frobnicate\" is no subcommand; there are: render, tables, probe, devices"},
+             {"frobnicate", "\"frobnicate\" is no subcommand; there are: render, tables, probe, compare, devices"},
              {"render", "scene"},
              {"render " + sphere_scene, "output"},
              {"render nowhere.json" + out, "nowhere.json"},
