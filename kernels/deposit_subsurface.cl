@@ -1,6 +1,7 @@
 // Stage 4 of a pass, below translucent surfaces: exits are sampled, put onto the real surface, stored in the maps
 // F, S and M, and the paths go on. Kugita et al., section 3.3 and PHYSICS section 3, model `paper`; PHYSICS section 4,
 // model `conserving`.
+#include "lib/exit_points.clh"
 #include "lib/first_collision.clh"
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
@@ -14,37 +15,18 @@
 // Optical lengths beyond this let nothing through: exp(-40) = 4e-18.
 #define OPAQUE_DEPTH 40.0f
 
-// Refraction angle [deg] of light that arrives at incidence cosine cos_in, by Snell's law.
-FORCE_INLINE float refraction_angle_deg(float cos_in, float eta) {
-    const float sin_in = sqrt(max(0.0f, 1.0f - cos_in * cos_in));
-    return asin(min(sin_in / eta, 1.0f)) * 57.2957795f;
-}
-
 // What was to leave where there is no surface.
 FORCE_INLINE float2 missed_light(const ExitPoint* exit_point) {
     return exit_point->r_mm < 0.0f ? light_in(exit_point->kept) : (float2)(0.0f);
 }
 
-// A point of a surface's tangent plane, and what is known of the way there.
-typedef struct PlanePoint {
-    float3 at;
-    float r_mm, row, way_mm, scale;  // as in ExitPoint
-} PlanePoint;
-
 // Model `paper`: at distance r from the entry, r drawn from the component's table, azimuth uniform (STEP 2 and 3).
 FORCE_INLINE PlanePoint paper_exit(float3 entry, float3 normal, float3 direction, float eta, TableShape shape,
                                    __global const float* mean_rows, __global const float* cumulative_rows,
                                    Random4 draw) {
-    PlanePoint p;
-    p.row = refraction_angle_deg(-dot(direction, normal), eta);
-    p.r_mm = sample_distance(mean_rows, cumulative_rows, shape, p.row, draw.a);
-    p.way_mm = 0.0f;
-    p.scale = 1.0f;
-    float3 s, t;
-    tangent_frame(normal, &s, &t);
-    const float2 at = p.r_mm * unit_circle(draw.b);
-    p.at = entry + at.x * s + at.y * t;
-    return p;
+    const float row = refraction_angle_deg(-dot(direction, normal), eta);
+    const float r_mm = sample_distance(mean_rows, cumulative_rows, shape, row, draw.a);
+    return about_entry(entry, normal, r_mm, row, draw.b);
 }
 
 // Model `conserving`: about the foot of the first collision, which lies way_mm along the refracted ray. Direct: where a
@@ -116,12 +98,7 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
         }
         reach = length(p.at - entry) + 8.0f * pass->offset_mm;
     }
-    const LightSum none = {0.0f, 0.0f};
-    exits[round.first_exit + i] = (ExitPoint){entry.x,  entry.y, entry.z, p.r_mm,         normal.x, normal.y,
-                                              normal.z, p.row,   path,    point.material, p.way_mm, p.scale,
-                                              none,     none};
-    probes[round.first_exit + i] =
-        (Probe){p.at.x, p.at.y, p.at.z, reach, normal.x, normal.y, normal.z, reach < 0.0f ? STOKES_NONE : point.body};
+    store_exit(p, reach, path, &point, &exits[round.first_exit + i], &probes[round.first_exit + i]);
 }
 
 // Work-items: count exits. Reads: probes, hits of trace_probe, triangles.
@@ -180,7 +157,8 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
 
 // Work-items: round.count exits of round.component, from round.first_exit on.
 // Reads: materials, spectra (re-radiation, excitation, sigma_t, albedo), table_shapes and table16: the tables at the
-//   pass's wavelengths, flux of the arriving photons [W/nm].
+//   pass's wavelengths, or with STOKES_SAMPLER_INTEGRATED what integrate_power wrote for each exit; flux of the
+//   arriving photons [W/nm].
 // Writes: the map's slot round.first_slot + i: flux that leaves there (`paper`: eq. 3, 4 or 5), ExitPoint.kept and
 //   .event_light, ledgers (stored, dropped deposits).
 __kernel void deposit_exits(EventRound round, __global const PassConstants* pass,
@@ -199,7 +177,7 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
 
     float16 leaving = flux[exit_point->path];
     float2 event_light = (float2)(0.0f);
-    if (round.sampler == STOKES_SAMPLER_PAPER) {
+    if (round.sampler == STOKES_SAMPLER_PAPER || round.sampler == STOKES_SAMPLER_INTEGRATED) {
         if (fluorescent) {
             leaving = reradiate(&spectra[material->reradiation_row], leaving) * chain;
             event_light = light_of(leaving, pass);
@@ -213,6 +191,8 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
     }
     if (material->medium != STOKES_NONE && round.sampler == STOKES_SAMPLER_DIRECT)
         leaving *= exp(-spectra[material->sigma_row] * exit_point->row);
+    else if (material->medium != STOKES_NONE && round.sampler == STOKES_SAMPLER_INTEGRATED)
+        leaving *= table16[round.first_exit + i];
     else if (material->medium != STOKES_NONE)
         leaving *= power_table_at(table16, table_shapes[material->medium * 3u + round.component],
                                   fabs(exit_point->r_mm), exit_point->row);

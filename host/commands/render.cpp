@@ -39,7 +39,7 @@ struct RenderOptions {
     std::int64_t photons = 0;
     std::uint32_t seed = 0;
     double alpha = 0.0, radius_mm = 0.0, exposure_ev = 0.0, max_memory_gib = 0.0;
-    bool quiet = false;
+    bool quiet = false, no_tables = false;
 };
 
 // What was given on the command line takes the place of what the scene says.
@@ -52,6 +52,10 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--radius")) render.radius_mm = options.radius_mm;
     if (command.count("--transport"))
         render.transport = static_cast<Transport>(index_of_word(options.transport, transport_words));
+    if (options.no_tables && render.transport != Transport::paper)
+        throw InputError("--no-tables: expected transport \"paper\", got \"" +
+                         transport_words[static_cast<std::size_t>(render.transport)] + "\"");
+    if (options.no_tables) render.tables = false;
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -88,6 +92,7 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.device = device.description().name;
     stats.driver = device.description().platform + " " + device.description().driver;
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
+    stats.tables = scene.render.transport != Transport::walk && scene.render.tables;
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -245,6 +250,8 @@ void add_render_command(CLI::App& app) {
     command->add_option("--transport", options->transport, "How light travels below translucent surfaces")
         ->type_name("MODEL")
         ->check(word_of(transport_words));
+    command->add_flag("--no-tables", options->no_tables,
+                      "Model paper: every photon integrates its power itself, in place of the tables");
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

@@ -10,6 +10,7 @@
 #include "host/render/radius.hpp"
 #include "host/scene/bvh_builder.hpp"
 #include "host/scene/mesh_topology.hpp"
+#include "host/subsurface/distance_mixture.hpp"
 #include "host/subsurface/distance_sampler.hpp"
 #include "host/subsurface/fresnel.hpp"
 
@@ -64,11 +65,40 @@ std::vector<MaterialRecord> material_records(const Scene& scene) {
     return records;
 }
 
-DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
+// By index of Scene::media: some material has it below its surface.
+std::vector<bool> needed_media(const Scene& scene) {
     std::vector<bool> needed(scene.media.size(), false);
     for (const Material& material : scene.materials)
         if (has_subsurface(material))
             needed[static_cast<std::size_t>(material.medium)] = true;
+    return needed;
+}
+
+MediumSpectra spectra_of(const Medium& medium) {
+    return {medium.name, medium.sigma_s, medium.sigma_a, medium.eta, medium.dipole_eta};
+}
+
+bool integrates(const Scene& scene) {
+    return scene.render.transport == Transport::paper && !scene.render.tables;
+}
+
+IntegratedMedia upload_integrated_media(const Device& device, const Scene& scene) {
+    const std::vector<bool> needed = needed_media(scene);
+    std::vector<DistanceMixture> mixtures(scene.media.size());
+    std::vector<float> rows;
+    for (std::size_t m = 0; m < scene.media.size(); ++m) {
+        if (!needed[m]) continue;
+        const MediumMixture mixture = make_medium_mixture(spectra_of(scene.media[m]), rows.size());
+        mixtures[m] = mixture.record;
+        append(rows, mixture.rows);
+    }
+    return {Buffer<DistanceMixture>(device, "distance mixtures", mixtures),
+            Buffer<float>(device, "distance mixture rows", rows),
+            Buffer<PassMedium>(device, "media of the pass", scene.media.size())};
+}
+
+DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
+    const std::vector<bool> needed = needed_media(scene);
     std::vector<TableShape> shapes;
     std::vector<float> values, mean_rows, cumulative_rows;
     DeviceTables result;
@@ -77,8 +107,7 @@ DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
             shapes.insert(shapes.end(), 3, TableShape{});
             continue;
         }
-        const Medium& medium = scene.media[m];
-        const MediumSpectra spectra{medium.name, medium.sigma_s, medium.sigma_a, medium.eta, medium.dipole_eta};
+        const MediumSpectra spectra = spectra_of(scene.media[m]);
         for (const PowerTable& table :
              {make_fluorescence_table(spectra), make_single_table(spectra), make_multiple_table(spectra)}) {
             const DistanceSampler sampler = make_distance_sampler(table, mean_rows.size());
@@ -137,9 +166,9 @@ DeviceTables reserve_green_tables(const Device& device, const Scene& scene) {
     return result;
 }
 
-// `walk` needs none; the kernels' arguments are there.
+// `walk` needs none, and `paper` need not have any; the kernels' arguments are there.
 DeviceTables make_tables(const Device& device, const Scene& scene) {
-    if (scene.render.transport == Transport::paper) return upload_power_tables(device, scene);
+    if (scene.render.transport == Transport::paper && !integrates(scene)) return upload_power_tables(device, scene);
     if (scene.render.transport == Transport::conserving) return reserve_green_tables(device, scene);
     return reserve_green_tables(device, Scene{});
 }
@@ -237,6 +266,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     light_count = static_cast<std::uint32_t>(scene.lights.size());
     transport = scene.render.transport;
     tables = make_tables(device, scene);
+    if (integrates(scene)) integrated = upload_integrated_media(device, scene);
     has_fresnel = std::any_of(scene.materials.begin(), scene.materials.end(),
                               [&](const Material& material) { return reflects(scene, material); });
     bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));

@@ -30,6 +30,7 @@ class PassMaker {
 
   private:
     void resample_tables();
+    void sample_media();
     const Scene& scene_;
     const DeviceScene& on_device_;
     PassBuffers buffers_;

@@ -45,6 +45,7 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("device", json_quoted(s.device));
     add("driver", json_quoted(s.driver));
     add("transport", json_quoted(s.transport));
+    add("tables", s.tables ? "true" : "false");
     add("passes", number(std::uint64_t{s.passes}));
     add("seed", number(std::uint64_t{s.seed}));
     add("width", std::to_string(s.width));

@@ -41,6 +41,7 @@ struct RenderSettings {
     int lambda_min_nm = 300;  // inclusive
     int lambda_max_nm = 780;  // inclusive
     Transport transport = Transport::conserving;
+    bool tables = true;  // paper: false: no power tables, every photon integrates eq. 3-5 itself
     bool first_collision_only = false;  // walk: fluorophores take light up at its first collision only
 };
 

@@ -77,6 +77,7 @@ STOKES_ASSERT_SIZE(SurfacePoint, 32);
 #define STOKES_SAMPLER_PAPER 0u      // distance from the component's power table, PHYSICS section 3
 #define STOKES_SAMPLER_DIRECT 1u     // straight from the first collision to the surface: G0 of PHYSICS section 4
 #define STOKES_SAMPLER_SCATTERED 2u  // distance from the Green's function table: G1
+#define STOKES_SAMPLER_INTEGRATED 3u // PHYSICS section 3 without tables, by integrate_power.cl; below the same as PAPER
 
 // One subsurface exit. Written by sample_exits, place_exits and deposit_exits.
 typedef struct ExitPoint {

@@ -16,6 +16,7 @@ RenderStats example() {
     stats.device = "pthread-cpu";
     stats.driver = "3.1";
     stats.transport = "walk";
+    stats.tables = false;
     stats.passes = 12;
     stats.seed = 4000000000u;
     stats.width = 640;
@@ -55,6 +56,7 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     const nlohmann::json json = written(example());
     CHECK(json.at("passes") == 12);
     CHECK(json.at("transport") == "walk");
+    CHECK(json.at("tables") == false);
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
     CHECK(json.at("photons_emitted") == 12000000000ull);
@@ -85,6 +87,7 @@ TEST_CASE("statistics of nothing are still JSON", "[stats]") {
     const nlohmann::json json = written(RenderStats{});
     CHECK(json.at("photons_per_second") == 0.0);
     CHECK(json.at("stages").empty());
+    CHECK(json.at("tables") == true);
     CHECK(json.at("dropped").empty());
 }
 

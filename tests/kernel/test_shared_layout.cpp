@@ -9,6 +9,7 @@
 #include "kernels/shared/gather.h"
 #include "kernels/shared/green.h"
 #include "kernels/shared/hash_grid.h"
+#include "kernels/shared/integrated_power.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/pass.h"
@@ -42,6 +43,10 @@ using namespace stokes;
         F(HashGrid, cells_per_mm) F(HashGrid, cells_x) F(HashGrid, cells_y) F(HashGrid, cells_z) \
         F(HashGrid, row_mask) F(HashGrid, keys) F(HashGrid, bucket_shift) F(HashGrid, radius_mm) \
         F(HashGrid, stride) \
+    S(PassMedium) F(PassMedium, sigma_s) F(PassMedium, sigma_a) F(PassMedium, dipole_a) F(PassMedium, pad) \
+    S(DistanceMixture) F(DistanceMixture, first) F(DistanceMixture, count) F(DistanceMixture, r_max_mm) \
+        F(DistanceMixture, theta_max_deg) F(DistanceMixture, reach_f_mm) F(DistanceMixture, reach_s_mm) \
+        F(DistanceMixture, pad) \
     S(LightRecord) F(LightRecord, kind) F(LightRecord, first_triangle) F(LightRecord, triangle_count) \
         F(LightRecord, cumulative_probability) F(LightRecord, px) F(LightRecord, py) F(LightRecord, pz) \
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
