@@ -69,6 +69,11 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     }
 }
 
+// Left, top, width, height.
+std::string crop_text(const Crop& crop) {
+    return fmt::format("{} {} {} {}", crop.left, crop.top, crop.width, crop.height);
+}
+
 Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double exposure_ev) {
     return {{"stokes.version", std::string(STOKES_VERSION)},
             {"stokes.scene", stats.scene},
@@ -83,6 +88,7 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.lambdaMin_nm", scene.render.lambda_min_nm},
             {"stokes.lambdaMax_nm", scene.render.lambda_max_nm},
             {"stokes.exposure_ev", exposure_ev},
+            {"stokes.crop", crop_text(scene.camera.crop)},
             {"stokes.wall_s", stats.wall_s}};
 }
 

@@ -12,11 +12,18 @@
 
 namespace stokes {
 
+// A window of the picture, in fractions of its width and height from the top left corner.
+struct Crop {
+    double left = 0.0, top = 0.0;
+    double width = 1.0, height = 1.0;
+};
+
 struct Camera {  // pinhole
     glm::dvec3 position_mm{0.0};
     glm::dvec3 target_mm{0.0, 0.0, -1.0};
     glm::dvec3 up{0.0, 1.0, 0.0};
-    double vertical_fov_deg = 40.0;
+    double vertical_fov_deg = 40.0;  // of the whole picture
+    Crop crop;                       // what the film shows of it
 };
 
 struct Film {

@@ -12,7 +12,8 @@ const ObjectKeys render{
     {},
     {"passes", "photons_per_pass", "alpha", "radius_mm", "seed", "lambda_min_nm", "lambda_max_nm"}};
 const ObjectKeys film{"film", {}, {"width", "height", "exposure_ev"}};
-const ObjectKeys camera{"camera", {"position_mm", "target_mm"}, {"up", "vertical_fov_deg"}};
+const ObjectKeys camera{"camera", {"position_mm", "target_mm"}, {"up", "vertical_fov_deg", "crop"}};
+const ObjectKeys crop{"crop", {"left", "top", "width", "height"}, {}};
 
 const ObjectKeys spectrum_file{"spectrum_file", {"file", "column"}, {"scale", "outside"}};
 const ObjectKeys spectrum_illuminant{"spectrum_illuminant", {"illuminant"}, {}};
@@ -86,6 +87,7 @@ std::vector<ObjectKeys> all_object_keys() {
             render,
             film,
             camera,
+            crop,
             spectrum_file,
             spectrum_illuminant,
             spectrum_pairs,

@@ -15,7 +15,7 @@ struct ObjectKeys {
 
 namespace keys {
 
-extern const ObjectKeys scene, render, film, camera;
+extern const ObjectKeys scene, render, film, camera, crop;
 extern const ObjectKeys spectrum_file, spectrum_illuminant, spectrum_pairs, spectrum_constant;
 extern const ObjectKeys medium, fluorophore;
 extern const ObjectKeys material_diffuse, material_black, material_translucent;

@@ -58,8 +58,8 @@ def adjusted(settings, mask, dot):
 
 
 def jobs(settings):
-    overview = {"camera.position_mm": [130, 165, 190], "camera.target_mm": [0, 47, 0], "camera.up": [0, 1, 0],
-                "camera.vertical_fov_deg": 38}
+    overview = {"camera.position_mm": [105, 150, 165], "camera.target_mm": [0, 50, 0], "camera.up": [0, 1, 0],
+                "camera.vertical_fov_deg": 36, "materials.card.reflectance": 0.9}
     found = probes(settings)
     found.append(job(settings, "fig11", scenes.change(scene(settings, "cat", "545", True), overview)))
     for mask, key in MASKS.items():

@@ -176,6 +176,27 @@ TEST_CASE("the command line's transport takes the scene's place, and the outputs
     }
 }
 
+TEST_CASE("a scene's crop is rendered, and the picture says which it is", "[command line]") {
+    const TemporaryFolder folder;
+    const std::string render = "render " + folder.file("s.json") + small_render + "--quiet -o " + folder.file("a.exr");
+    const auto crop_scene = [&](const std::string& left) {
+        put_file(folder.file("s.json"),
+                 edited_sphere_scene("\"camera\": {", "\"camera\": {\"crop\": {\"left\": " + left +
+                                                         ", \"top\": 0.125, \"width\": 0.5, \"height\": 0.5}, "));
+    };
+    crop_scene("0.25");
+    REQUIRE(run_stokes(render).code == 0);
+    const ExrImage image = read_exr(folder.file("a.exr"));
+    CHECK(image.width == 24);
+    CHECK(image.height == 16);
+    CHECK(std::get<std::string>(image.attributes.at("stokes.crop")) == "0.25 0.125 0.5 0.5");
+    crop_scene("0.75");
+    const Outcome outside = run_stokes(render);
+    CHECK(outside.code == 2);
+    CHECK(outside.err ==
+          "stokes: " + folder.file("s.json") + ":5: camera.crop: expected left + width up to 1, got 1.25\n");
+}
+
 TEST_CASE("a transport that there is not is bad input, in one line", "[command line]") {
     const Outcome outcome = run_stokes("render " + sphere_scene + " --png x.png --transport dipole");
     CHECK(outcome.code == 2);

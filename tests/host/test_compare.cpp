@@ -63,6 +63,14 @@ TEST_CASE("errors of a picture of four pixels are those of the hand", "[compare]
     }
 }
 
+// Over values -3, 1, 2 an error of 1 in each.
+TEST_CASE("negative values of a reference count by their size", "[compare]") {
+    const LayerError e = compare_layer(rgb_of({{-2, 2, 3}}), rgb_of({{-3, 1, 2}}), 1);
+    CHECK(e.reference_mean == Approx(2.0).epsilon(1e-6));
+    CHECK(e.relative_rmse == Approx(0.5).epsilon(1e-6));
+    CHECK(e.peak == Approx(2.0).epsilon(1e-6));
+}
+
 TEST_CASE("the bias changes its sign with the sides, the rest of the error does not", "[compare]") {
     const LayerError e = compare_layer(picture(), rgb_of(reference_xyz), 2);
     const LayerError back = compare_layer(rgb_of(reference_xyz), picture(), 2);

@@ -91,5 +91,7 @@ TEST_CASE("The schema has the reader's limits") {
           transport_words[static_cast<std::size_t>(RenderSettings().transport)]);
     CHECK(property("material_translucent", "fresnel").at("default") == Material().fresnel);
     CHECK(property("fluorophore", "quantum_yield").at("maximum") == 1);
+    for (const char* key : {"left", "top", "width", "height"}) CHECK(property("crop", key).at("maximum") == 1);
+    for (const char* key : {"width", "height"}) CHECK(property("crop", key).at("minimum") == 0.001);
     CHECK(schema.at("$defs").at("spectrum_up_to_1").at("allOf").at(1).at("maximum") == 1);
 }
