@@ -97,16 +97,28 @@ def true_error(passes, errors, truth_passes):
     return np.sqrt(np.maximum(errors**2 - truth**2, 1e-30)), float(truth)
 
 
-def pass_ratio(passes_a, errors_a, passes_b, errors_b):
-    """How many times the passes of b curve a needs for the same error: the geometric mean over the errors both reach, and
-    the least and the largest ratio. Errors are interpolated on straight lines in logarithms."""
-    low = max(min(errors_a), min(errors_b))
-    high = min(max(errors_a), max(errors_b))
-    if not high > low:
-        return None
-    def passes_at(passes, errors, wanted):
-        order = np.argsort(errors)
-        return np.interp(wanted, np.log(np.asarray(errors))[order], np.log(np.asarray(passes, float))[order])
-    wanted = np.linspace(np.log(low), np.log(high), 64)
-    ratios = passes_at(passes_a, errors_a, wanted) - passes_at(passes_b, errors_b, wanted)
-    return float(np.exp(ratios.mean())), float(np.exp(ratios.min())), float(np.exp(ratios.max()))
+def pass_ratio(passes, errors_a, errors_b):
+    """How many times the passes of curve b curve a needs for the same error, and the standard error of that. Both curves
+    have the same passes and, seed by seed, the same wavelengths, so their gap in logarithms is far better known than
+    either of them; divided by their common slope it is the ratio."""
+    x = np.log(np.asarray(passes, float))
+    curves = [np.log(np.asarray(errors)) for errors in (errors_a, errors_b)]
+    gaps = curves[0] - curves[1]
+    both = np.concatenate([curve - curve.mean() for curve in curves])
+    centred = np.tile(x - x.mean(), 2)
+    common = np.sum(both * centred) / np.sum(centred**2)
+    if common >= 0:
+        return float("nan"), float("nan")
+    miss = both - common * centred
+    common_error = np.sqrt(np.sum(miss**2) / (len(both) - 3) / np.sum(centred**2)) if len(x) > 2 else float("nan")
+    gap, gap_error = gaps.mean(), gaps.std(ddof=1) / np.sqrt(len(gaps))
+    ratio = np.exp(-gap / common)
+    return float(ratio), float(ratio * np.hypot(gap_error / common, gap * common_error / common**2))
+
+
+def rmse_of_shape(picture, truth):
+    """rmse after each of X, Y, Z of the picture was scaled to fit the truth best: what the draw of wavelengths does to
+    the brightness and hue of the whole picture does not count, the grain does."""
+    xyz, wanted = (image.reshape(-1, 3) @ XYZ_OF_RGB.T for image in (picture, truth))
+    gain = np.sum(xyz * wanted, axis=0) / np.maximum(np.sum(xyz**2, axis=0), 1e-300)
+    return float(np.sqrt(np.mean((gain * xyz - wanted)**2)))

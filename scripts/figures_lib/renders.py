@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
 import time
 
 from figures_lib import exr, scenes
@@ -115,6 +114,7 @@ class Renderer:
         try:
             _, status, usage = os.wait4(child.pid, 0)
         except KeyboardInterrupt:
+            child.terminate()
             os.wait4(child.pid, 0)
             raise
         code = child.returncode = os.waitstatus_to_exitcode(status)
@@ -135,7 +135,3 @@ def _clock(seconds):
     minutes = int(seconds / 60 + 0.5)
     return f"{minutes // 60} h {minutes % 60:02d} min" if minutes >= 60 else f"{minutes} min" if minutes else "a minute"
 
-
-def die(text):
-    print(f"figures: {text}", file=sys.stderr)
-    sys.exit(1)

@@ -14,7 +14,7 @@ class Settings:
     truth_passes: int
     radius_scale: float = 1.0  # of the scenes' own radius; larger where there are fewer photons
     probe_passes: int = 16     # of the renders whose brightness or time is measured beforehand
-    curve_seeds: int = 3       # error curves that are averaged
+    curve_seeds: int = 4       # error curves that are averaged
 
     @property
     def size(self):
@@ -33,5 +33,5 @@ class Settings:
 
 
 FULL = Settings("full", passes=1024, photons=262144, width=640, height=480, truth_passes=10000, probe_passes=64)
-QUICK = Settings("quick", passes=64, photons=65536, width=256, height=192, truth_passes=512, radius_scale=1.6, curve_seeds=2)
+QUICK = Settings("quick", passes=64, photons=65536, width=256, height=192, truth_passes=512, radius_scale=1.6, curve_seeds=4)
 TINY = Settings("tiny", passes=4, photons=4096, width=40, height=30, truth_passes=8, radius_scale=5, probe_passes=2, curve_seeds=1)

@@ -71,10 +71,22 @@ class Curves(unittest.TestCase):
 
     def test_passes_for_equal_error(self):
         passes = 2.0 ** np.arange(11)
-        mean, low, high = measure.pass_ratio(passes, 2 * passes**-0.5, passes, passes**-0.5)
-        for ratio in (mean, low, high):
-            self.assertAlmostEqual(ratio, 4, places=6)
-        self.assertIsNone(measure.pass_ratio(passes, 100 + passes, passes, 1 / passes))
+        shared = np.exp(np.random.default_rng(2).normal(0, 0.4, passes.size))
+        ratio, error = measure.pass_ratio(passes, 2 * passes**-0.5, passes**-0.5)
+        self.assertAlmostEqual(ratio, 4, places=6)
+        self.assertLess(error, 1e-6)
+        ratio, error = measure.pass_ratio(passes, 2 * passes**-0.5 * shared, passes**-0.5 * shared)
+        self.assertGreater(error, 0.01)
+        self.assertAlmostEqual(ratio, 4, delta=4 * error)
+        self.assertTrue(np.isnan(measure.pass_ratio(passes, 2 * passes, passes)[0]))
+
+    def test_brightness_and_hue_of_the_whole_are_no_error_of_shape(self):
+        random = np.random.default_rng(3)
+        truth = random.uniform(0, 1, (20, 30, 3))
+        scaled = (truth @ measure.XYZ_OF_RGB.T * [1.3, 0.8, 2]) @ np.linalg.inv(measure.XYZ_OF_RGB).T
+        self.assertLess(measure.rmse_of_shape(scaled, truth), 1e-6)
+        self.assertGreater(measure.rmse(scaled, truth), 0.1)
+        self.assertGreater(measure.rmse_of_shape(truth + random.normal(0, 0.1, truth.shape), truth), 0.05)
 
 
 class Places(unittest.TestCase):
