@@ -257,6 +257,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     triangles = Buffer<Triangle>(device, "triangles", all);
     shapes = Buffer<ShapeRecord>(device, "shapes", shape_records);
     materials = Buffer<MaterialRecord>(device, "materials", material_records(scene));
+    textures = upload_textures(device, scene);
 
     light_probability = light_probabilities(scene);
     const LightTables tables_of_lights = light_tables(scene, light_probability, all, first_triangle);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/device/device.hpp"
+#include "host/render/device_textures.hpp"
 #include "host/scene/scene.hpp"
 #include "host/subsurface/device_table.hpp"
 #include "host/subsurface/green_table.hpp"
@@ -57,6 +58,7 @@ struct DeviceScene {
     Buffer<Triangle> triangles;
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
+    DeviceTextures textures;
     Buffer<std::uint32_t> bodies;  // STOKES_BODY_*, by body; one entry where the transport does not ask
     Buffer<BvhNode> nodes;
     Buffer<BvhBlock> blocks;

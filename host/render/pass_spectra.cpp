@@ -1,5 +1,6 @@
 #include "host/render/pass_spectra.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -52,7 +53,9 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
 SpectraLayout::SpectraLayout(const Scene& scene)
     : materials(static_cast<std::uint32_t>(scene.materials.size())),
       fluorophores(static_cast<std::uint32_t>(scene.fluorophores.size())),
-      media(static_cast<std::uint32_t>(scene.media.size())) {}
+      media(static_cast<std::uint32_t>(scene.media.size())),
+      textures(static_cast<std::uint32_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
+                                                        [](const Material& m) { return m.texture != nullptr; }))) {}
 
 // Given k wavelengths of a path in the set, the next is in it with probability (n - k)/(N - k).
 PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass) {
@@ -125,6 +128,8 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
         result.rows.push_back(sigma_t);
         result.rows.push_back(albedo);
     }
+    for (const Material& material : scene.materials)
+        if (material.texture) result.rows.push_back(sampled(material.white, set));
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const Light& light = scene.lights[i];
         const double p = probabilities[i];

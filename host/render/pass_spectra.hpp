@@ -14,7 +14,7 @@ namespace stokes {
 
 // Where rows of the pass's spectra stand: a row is one Flux16.
 // [0, materials): reflectance; then one excitation row and 16 re-radiation rows a fluorophore; then sigma_t [1/mm] and
-// albedo of each medium.
+// albedo of each medium; then the white reflectance of each material that has a texture.
 struct SpectraLayout {
     explicit SpectraLayout(const Scene& scene);
     std::uint32_t excitation_row(int fluorophore) const { return materials + static_cast<std::uint32_t>(fluorophore) * 17; }
@@ -22,8 +22,10 @@ struct SpectraLayout {
     std::uint32_t sigma_row(int medium) const {
         return materials + fluorophores * 17 + static_cast<std::uint32_t>(medium) * 2;
     }
-    std::uint32_t row_count() const { return materials + fluorophores * 17 + media * 2; }
-    std::uint32_t materials, fluorophores, media;
+    // texture: number of the material among those with a texture.
+    std::uint32_t white_row(std::uint32_t texture) const { return materials + fluorophores * 17 + media * 2 + texture; }
+    std::uint32_t row_count() const { return white_row(textures); }
+    std::uint32_t materials, fluorophores, media, textures;
 };
 
 // The wavelengths of a pass, and what keeps sums over those that light is re-radiated from unbiased.

@@ -71,7 +71,7 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
         round.count = count;
         const ListCounts lists = make_lists(scene, pass, round);
         round.count = lists.diffuse;
-        scatter_at_surfaces(pass, round, maps[STOKES_MAP_SURFACE]);
+        scatter_at_surfaces(scene, pass, round, maps[STOKES_MAP_SURFACE]);
         scatter_below_surfaces(scene, pass, round, lists, maps);
         std::swap(alive_, next_alive_);
         count = lists.alive;
@@ -91,13 +91,14 @@ ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers&
     return totals_.download(1).front();
 }
 
-void PhotonTracer::scatter_at_surfaces(const PassBuffers& pass, EventRound round, PhotonMap& map) {
+void PhotonTracer::scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
+                                       PhotonMap& map) {
     if (round.count == 0) return;
     map.reserve(round.count);
     round.first_slot = map.used();
     round.slot_limit = map.capacity();
-    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, pass.rows, rays_, flux_, ledgers_, map.heads(),
-                    map.flux());
+    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows, scene.textures.records,
+                    scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_, map.heads(), map.flux());
     deposits_ += round.count;
     refused_slots_ += map.advance(round.count);
 }

@@ -46,7 +46,7 @@ class PhotonTracer {
 
   private:
     ListCounts make_lists(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);
-    void scatter_at_surfaces(const PassBuffers& pass, EventRound round, PhotonMap& map);
+    void scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round, PhotonMap& map);
     void scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
                                 const ListCounts& lists, PhotonMaps& maps);
     void sample_exits(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);

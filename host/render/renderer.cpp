@@ -101,7 +101,8 @@ void Renderer::see_points(const CameraRecord& camera) {
 }
 
 GatherScene Renderer::seen_scene() const {
-    return {on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.buffers().rows, pass_.buffers().radiance};
+    return {on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.buffers().rows, pass_.buffers().radiance,
+            on_device_.textures};
 }
 
 // Adds the photons to the film, map by map.

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host/core/spectrum.hpp"
+#include "host/scene/picture.hpp"
 
 namespace stokes {
 
@@ -75,6 +77,9 @@ struct Material {
     std::string name;
     MaterialKind kind = MaterialKind::black;
     Spectrum reflectance = Spectrum::constant(0.0);  // diffuse: in [0, 1]
+    // diffuse: a picture without opacity; reflectance + luminance (white - reflectance) where it lies; or none
+    std::shared_ptr<const Picture> texture;
+    Spectrum white = Spectrum::constant(0.0);  // in [0, 1]
     int medium = -1;                                 // translucent with subsurface: index into Scene::media
     int fluorophore = -1;                            // translucent: index into Scene::fluorophores, -1: none
     double fluorescent_fraction = 0.0;               // c in [0, 1]
@@ -85,6 +90,8 @@ struct Material {
 struct Mesh {
     std::vector<glm::vec3> positions_mm;
     std::vector<glm::uvec3> triangles;  // counter-clockwise seen from outside
+    // Of each triangle's corners, the picture's top left corner at (0, 0), bottom right at (1, 1); empty: none.
+    std::vector<std::array<glm::vec2, 3>> uv = {};
 };
 
 // Shapes with the same body exchange light below their surfaces: an exit point may lie on any of them.

@@ -25,6 +25,7 @@ const ObjectKeys medium{
 const ObjectKeys fluorophore{
     "fluorophore", {"excitation", "emission"}, {"conversion_per_nm", "quantum_yield"}};
 
+const ObjectKeys reflectance_texture{"reflectance_texture", {"texture", "black", "white"}, {}};
 const ObjectKeys material_diffuse{"material_diffuse", {"type", "reflectance"}, {}};
 const ObjectKeys material_black{"material_black", {"type"}, {}};
 const ObjectKeys material_translucent{
@@ -94,6 +95,7 @@ std::vector<ObjectKeys> all_object_keys() {
             spectrum_constant,
             medium,
             fluorophore,
+            reflectance_texture,
             material_diffuse,
             material_black,
             material_translucent,

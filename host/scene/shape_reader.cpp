@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
-#include <new>
 
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
+#include "host/scene/input_files.hpp"
 #include "host/scene/mask.hpp"
 #include "host/scene/material_reader.hpp"
 #include "host/scene/mesh.hpp"
 #include "host/scene/mesh_reader.hpp"
 #include "host/scene/picture.hpp"
 #include "host/scene/shapes.hpp"
-#include "host/scene/spectrum_reader.hpp"
 
 namespace stokes {
 namespace {
@@ -67,34 +66,10 @@ glm::dmat4 read_transform(const JsonCursor& shape) {
     return result;
 }
 
-// Meshes or pictures by path, so that a file used twice is read once.
-template <class Content, Content (*read_content)(const std::string&)>
-class Files {
-  public:
-    explicit Files(const std::filesystem::path& folder) : folder_(folder) {}
-
-    const Content& read(const JsonCursor& file) {
-        const std::string path = scene_path(folder_, file.text());
-        const auto found = contents_.find(path);
-        if (found != contents_.end()) return found->second;
-        try {
-            return contents_.emplace(path, read_content(path)).first->second;
-        } catch (const InputError& error) {
-            file.fail(error.what());
-        } catch (const std::bad_alloc&) {
-            file.fail(path + ": too large for the memory");
-        }
-    }
-
-  private:
-    const std::filesystem::path& folder_;
-    std::map<std::string, Content> contents_;
-};
-
 struct ShapeFiles {
     explicit ShapeFiles(const std::filesystem::path& folder) : meshes(folder), pictures(folder) {}
-    Files<Mesh, read_mesh> meshes;
-    Files<Picture, read_picture> pictures;
+    InputFiles<Mesh, read_mesh> meshes;
+    InputFiles<Picture, read_picture> pictures;
 };
 
 Mesh read_round_shape(const JsonCursor& where, std::size_t type) {
@@ -267,6 +242,12 @@ int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform,
                 fmt::format("expected coordinates {} mm, got {}", coordinate_range.text(), position[axis]));
         }
     }
+    const Material& material = material_of(scene, shape.material);
+    if (!material.texture) shape.mesh.uv.clear();
+    if (material.texture && shape.mesh.uv.empty())
+        where.fail(fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
+                               "mesh with texture coordinates",
+                               material.name));
     const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
     const std::size_t flat = std::min(flat_before, dropped);
     if (shape.mesh.triangles.empty()) {

@@ -103,7 +103,10 @@ Mesh make_sphere(double radius_mm, int segments) {
 Mesh make_rectangle(double width_mm, double height_mm) {
     const auto w = static_cast<float>(0.5 * width_mm);
     const auto h = static_cast<float>(0.5 * height_mm);
-    return {{{-w, 0, -h}, {-w, 0, h}, {w, 0, h}, {w, 0, -h}}, {{0, 1, 2}, {0, 2, 3}}};
+    const glm::vec2 uv[4] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+    return {{{-w, 0, -h}, {-w, 0, h}, {w, 0, h}, {w, 0, -h}},
+            {{0, 1, 2}, {0, 2, 3}},
+            {{uv[0], uv[1], uv[2]}, {uv[0], uv[2], uv[3]}}};
 }
 
 Mesh make_disk(double radius_mm, int segments) {
@@ -111,6 +114,11 @@ Mesh make_disk(double radius_mm, int segments) {
     const std::uint32_t centre = add_point(mesh, 0.0);
     const std::uint32_t edge = add_circle(mesh, segments, radius_mm, 0.0);
     add_fan(mesh, centre, edge, static_cast<std::uint32_t>(segments), true);
+    const auto scale = static_cast<float>(0.5 / radius_mm);
+    const auto uv = [&](std::uint32_t i) {
+        return glm::vec2(mesh.positions_mm[i].x, mesh.positions_mm[i].z) * scale + 0.5f;
+    };
+    for (const glm::uvec3& t : mesh.triangles) mesh.uv.push_back({uv(t.x), uv(t.y), uv(t.z)});
     return mesh;
 }
 

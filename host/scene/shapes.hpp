@@ -19,7 +19,8 @@ Mesh make_box(const glm::dvec3& size_mm);
 // vertices lie on the sphere, so that area and volume are a little below the sphere's.
 Mesh make_sphere(double radius_mm, int segments = default_segments);
 
-// In the plane y = 0, facing +y: width along x, height along z.
+// In the plane y = 0, facing +y: width along x, height along z. Rectangles and disks have (u, v) from (0, 0) at the least
+// x and z to (1, 1) at the largest.
 Mesh make_rectangle(double width_mm, double height_mm);
 
 // In the plane y = 0, facing +y; segments >= 3 around the edge.

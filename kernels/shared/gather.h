@@ -27,7 +27,7 @@ typedef struct GatherPoint {
     // times 1 / the share of the disk on the surface, in the mean (measure_disks).
     float weight;
     unsigned int reflected;  // 1: seen in a reflection; 0: the point lies on the pixel's own ray
-    unsigned int pad;
+    float luminance;         // of the material's texture there, in [0, 1]; 0 without one
 } GatherPoint;
 STOKES_ASSERT_SIZE(GatherPoint, 48);
 

@@ -22,8 +22,8 @@ def jobs(settings):
     def scene(fraction):
         return scenes.change(tiles, {f"materials.{colour}.fluorescent_fraction": fraction for colour in ("green", "red")})
     return [job(settings, name(fraction, model), scene(fraction), transport=model,
-                exposure=None if fraction == FRACTIONS[0] else exposure_of(name(FRACTIONS[0], model)))
-            for model in MODELS for fraction in FRACTIONS]
+                exposure=None if fraction == FRACTIONS[-1] else exposure_of(name(FRACTIONS[-1], model)))
+            for model in MODELS for fraction in reversed(FRACTIONS)]
 
 
 def emission_rgb(dot):

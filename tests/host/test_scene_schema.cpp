@@ -83,9 +83,12 @@ TEST_CASE("The schema has the reader's limits") {
     CHECK(property("render", "photons_per_pass").at("maximum") == most_photons_per_pass);
     CHECK(property("medium", "dipole_eta").at("maximum") == largest_dipole_eta);
     for (const auto& [kind, key] :
-         {std::pair("material_diffuse", "reflectance"), std::pair("fluorophore", "excitation"),
+         {std::pair("reflectance_texture", "black"), std::pair("reflectance_texture", "white"),
+          std::pair("fluorophore", "excitation"),
           std::pair("fluorophore", "emission")})
         CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
+    CHECK(property("material_diffuse", "reflectance").at("$ref") == "#/$defs/reflectance");
+    CHECK(schema.at("$defs").at("reflectance").at("oneOf").at(0).at("$ref") == "#/$defs/spectrum_up_to_1");
     CHECK(property("scene", "transport").at("enum") == transport_words);
     CHECK(property("scene", "transport").at("default") ==
           transport_words[static_cast<std::size_t>(RenderSettings().transport)]);

@@ -5,6 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/normals.hpp"
+#include "tests/support/textures.hpp"
 
 using namespace stokes;
 
@@ -119,7 +120,8 @@ class Bench {
                   {device, "shapes", shapes},
                   {device, "materials", materials},
                   {device, "spectra", spectra},
-                  {device, "emitted", lights}};
+                  {device, "emitted", lights},
+                  no_textures(materials.size())};
         rays_ = {device, "rays", rays};
         hits_ = {device, "hits", hits};
     }

@@ -17,6 +17,7 @@
 #include "kernels/shared/photon.h"
 #include "kernels/shared/power_table.h"
 #include "kernels/shared/ray.h"
+#include "kernels/shared/texture.h"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 
@@ -38,7 +39,7 @@ using namespace stokes;
         F(CameraRecord, down_y) F(CameraRecord, down_z) F(CameraRecord, pad1) \
     S(GatherPoint) F(GatherPoint, x) F(GatherPoint, y) F(GatherPoint, z) F(GatherPoint, pixel) \
         F(GatherPoint, nx) F(GatherPoint, ny) F(GatherPoint, nz) F(GatherPoint, material) \
-        F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, reflected) F(GatherPoint, pad) \
+        F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, reflected) F(GatherPoint, luminance) \
     S(HashGrid) F(HashGrid, origin_x) F(HashGrid, origin_y) F(HashGrid, origin_z) \
         F(HashGrid, cells_per_mm) F(HashGrid, cells_x) F(HashGrid, cells_y) F(HashGrid, cells_z) \
         F(HashGrid, row_mask) F(HashGrid, keys) F(HashGrid, bucket_shift) F(HashGrid, radius_mm) \
@@ -98,7 +99,11 @@ using namespace stokes;
         F(Probe, body) \
     S(Triangle) F(Triangle, v0x) F(Triangle, v0y) F(Triangle, v0z) F(Triangle, shape) F(Triangle, e1x) \
         F(Triangle, e1y) F(Triangle, e1z) F(Triangle, body) F(Triangle, e2x) F(Triangle, e2y) \
-        F(Triangle, e2z) F(Triangle, two_sided)
+        F(Triangle, e2z) F(Triangle, two_sided) \
+    S(TextureRecord) F(TextureRecord, width) F(TextureRecord, height) F(TextureRecord, first_texel) \
+        F(TextureRecord, white_row) \
+    S(TriangleUv) F(TriangleUv, u0) F(TriangleUv, v0) F(TriangleUv, u1) F(TriangleUv, v1) F(TriangleUv, u2) \
+        F(TriangleUv, v2)
 // clang-format on
 
 namespace {
