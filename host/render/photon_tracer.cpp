@@ -159,7 +159,8 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
         r.first_slot = map.used();
         r.slot_limit = map.capacity();
         deposit_.launch(r.count, r, pass.constants, scene.materials, pass.rows, scene.tables.shapes,
-                        scene.integrated ? powers_ : scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(), map.flux());
+                        scene.integrated ? powers_ : scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(),
+                        map.flux());
         deposits_ += r.count;
         refused_slots_ += map.advance(r.count);
     }
@@ -172,7 +173,8 @@ void PhotonTracer::sample_exits(const DeviceScene& scene, const PassBuffers& pas
     const Buffer<std::uint32_t>& list = round.component == STOKES_MAP_FLUORESCENCE ? fluorescence_ : elastic_;
     if (!scene.integrated) {
         sample_exits_.launch(round.count, round, pass.constants, list, points_, rays_, scene.materials, pass.rows,
-                             scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, exits_, probes_);
+                             scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, exits_,
+                             probes_);
         return;
     }
     if (!draw_exits_) {

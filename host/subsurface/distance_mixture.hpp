@@ -1,13 +1,12 @@
-// What kernels/lib/integrated_distance.clh draws exit distances from where there are no power tables: the medium's
-// coefficients at the tables' wavelengths, and with which probability each wavelength is chosen.
+// What kernels/lib/integrated_distance.clh draws exit distances from where there are no power tables: the
+// medium's coefficients at the tables' wavelengths, and with which probability each wavelength is chosen.
 #pragma once
 
 #include <vector>
 
 #include "host/subsurface/power_table.hpp"
-#include "kernels/shared/limits.h"
-
 #include "kernels/shared/integrated_power.h"
+#include "kernels/shared/limits.h"
 
 namespace stokes {
 
@@ -17,9 +16,10 @@ struct MediumMixture {
     std::vector<float> rows;   // STOKES_MIX_ROWS * wavelengths
 };
 
-// The wavelengths, the last distance and the last angle are those of the grid, so that distances have the density of
-// the tables on that grid (lambda counted once each). first: of the rows in their buffer [floats]. Throws InputError as
-// table_medium() and dipole_boundary() do.
-MediumMixture make_medium_mixture(const MediumSpectra& medium, std::size_t first = 0, const TableGrid& grid = {});
+// The wavelengths, the last distance and the last angle are those of the grid, so that distances have the
+// density of the tables on that grid (lambda counted once each). first: of the rows in their buffer [floats].
+// Throws InputError as table_medium() and dipole_boundary() do.
+MediumMixture make_medium_mixture(const MediumSpectra& medium, std::size_t first = 0,
+                                  const TableGrid& grid = {});
 
 }  // namespace stokes
