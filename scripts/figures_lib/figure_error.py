@@ -91,11 +91,14 @@ def measured(run, name, axis):
         corrected, truth_error = measure.true_error(passes, errors, settings.truth_passes)
         late = passes >= min(FIRST_PASSES, passes[-1] / 4)
         slope, error = measure.slope(passes[late], corrected[late])
-        scale = np.mean(run.results[f"truth_{name}_{word}"].picture().luminance())
+        # Relative to the mean luminance: as if the light had been adjusted to equal brightness.
+        scale = float(np.mean(run.results[f"truth_{name}_{word}"].picture().luminance()))
+        errors, own = errors / scale, own / scale
+        corrected, truth_error = corrected / scale, truth_error / scale
         numbers[word] = {
             "slope": slope, "slope_error": error, "slope_as_measured": measure.slope(passes[late], errors[late])[0],
-            "truth_error_cd_m2": truth_error, "mean_luminance_cd_m2": float(scale), "passes": passes.tolist(),
-            "rmse_cd_m2": errors.tolist(), "rmse_corrected_cd_m2": corrected.tolist()}
+            "truth_relative_rmse": truth_error, "mean_luminance_cd_m2": scale, "passes": passes.tolist(),
+            "relative_rmse": errors.tolist(), "relative_rmse_corrected": corrected.tolist()}
         fitted[word] = passes[late], corrected[late]
         axis.loglog(passes, corrected, "o-", color=COLOURS[word], markersize=4,
                     label=f"{words}: slope {slope:.2f} ± {error:.2f}")
@@ -103,8 +106,6 @@ def measured(run, name, axis):
             axis.loglog(passes, errors_of_seed, ":", color=COLOURS[word], linewidth=0.8)
     numbers["pass_ratio"], numbers["pass_ratio_error"] = measure.pass_ratio(
         fitted["with"][0], fitted["with"][1], fitted["without"][1])
-    relative = [errors / numbers[word]["mean_luminance_cd_m2"] for word, (_, errors) in fitted.items()]
-    numbers["pass_ratio_of_relative_errors"] = measure.pass_ratio(fitted["with"][0], *relative)[0]
     axis.set_xlabel("passes")
     axis.set_title(SCENES[name])
     axis.legend(fontsize=8)
@@ -118,20 +119,21 @@ def grain(run, axis):
         truth_rgb = run.results[f"truth_mask_{word}"].picture().rgb
         errors = [measure.rmse_of_shape(run.results[f"fig14_{word}_{n}"].picture().rgb, truth_rgb) for n in passes]
         errors, _ = measure.true_error(passes, errors, run.settings.truth_passes)
+        errors = errors / truth_rgb.dot(measure.XYZ_OF_RGB[1]).mean()
         slope, error = measure.slope(passes, errors)
-        numbers[word] = {"slope": slope, "slope_error": error, "passes": passes, "rmse_cd_m2": list(errors)}
+        numbers[word] = {"slope": slope, "slope_error": error, "passes": passes, "relative_rmse": list(errors)}
         axis.loglog(passes, errors, "s--", color=COLOURS[word], markersize=4, markerfacecolor="none",
                     label=f"grain alone: slope {slope:.2f} ± {error:.2f}")
     axis.legend(fontsize=8)
     numbers["pass_ratio"], numbers["pass_ratio_error"] = measure.pass_ratio(
-        passes, numbers["with"]["rmse_cd_m2"], numbers["without"]["rmse_cd_m2"])
+        passes, numbers["with"]["relative_rmse"], numbers["without"]["relative_rmse"])
     return numbers
 
 
 def report(run):
     drawing, axes = figure.axes(2)
     found = {name: measured(run, name, axis) for name, axis in zip(SCENES, axes)}
-    axes[0].set_ylabel("RMSE [cd/m$^2$]")
+    axes[0].set_ylabel("RMSE / mean luminance")
     mask, prisms = found["mask"], found["prisms"]
     mask["grain"] = grain(run, axes[0])
     numbers = {"pass_ratio": mask["pass_ratio"], "pass_ratio_error": mask["pass_ratio_error"],
@@ -147,9 +149,8 @@ def report(run):
         f"{_ratio(prisms)} times. Root mean square over {run.settings.curve_seeds} seeds, over pixels and X, Y, Z, against "
         f"truths of {run.settings.truth_passes} passes{reduction} and another seed. The truth errs too: as both errors follow "
         "one power law and are independent, its part is fitted and taken off (points); dotted are the seeds as measured. "
-        "Pictures of half the width.",
-        verdict(mask), [[run.plot("fig14", drawing, "Error over all pixels. On the left, the light without scattering is "
-                                                    "adjusted to equal brightness.")]], numbers)]
+        "Errors are relative to the mean luminance, so that both are compared at equal brightness. Pictures of half the width.",
+        verdict(mask), [[run.plot("fig14", drawing, "Error over all pixels, relative to the mean luminance.")]], numbers)]
 
 
 def _slope(numbers, word):

@@ -10,7 +10,7 @@ from figures_lib.figure import MODELS, base, exposure_of, job
 KEYS = ("fig18", "fig19")
 
 FRACTIONS = {"fig18": 0.5, "fig19": 1.0}
-CLOSE_UP = {"left": 0.36, "top": 0.5, "width": 0.28, "height": 0.28}
+CLOSE_UP = {"left": 0.33, "top": 0.5, "width": 0.34, "height": 0.34}
 PRISMS = ("tall prism", "low prism")
 
 

@@ -8,7 +8,7 @@ from figures_lib.figure import MODELS, base, exposure_of, job
 KEYS = ("fig16", "fig17")
 
 SCALES = {"x1": 0.5, "x2": 1.0}      # of the marble's scattering; the paper's scenes halve it
-CLOSE_UP = {"left": 0.4, "top": 0.34, "width": 0.27, "height": 0.27}
+CLOSE_UP = {"left": 0.38, "top": 0.405, "width": 0.345, "height": 0.345}
 TOP = 10                             # [mm], the disk's face
 RING = (24, 33)                      # [mm] from the axis: beyond the shadow
 HALF_SECTOR = 20                     # [degrees] from a sector's middle that are looked at
@@ -61,7 +61,8 @@ def fluorescence(result):
     ring = (np.hypot(x, z) > RING[0]) & (np.hypot(x, z) < RING[1])
     def means(layer):
         light = picture.luminance(layer)
-        return [float(light[ring & sector(angle, k)].mean()) for k in range(len(FRACTIONS))]
+        rings = [light[ring & sector(angle, k)] for k in range(len(FRACTIONS))]
+        return [float(part.mean()) if part.size else float("nan") for part in rings]
     return means("fluorescence"), means("")
 
 
@@ -74,7 +75,8 @@ def shadow_edge(result, sectors, layer=""):
     for k in sectors:
         inside = sector(angle, k) & (np.abs(distance) <= REACH) & (np.hypot(x, z) < 36)
         chosen |= inside
-        level[inside] = light[inside & (distance > PLATEAU)].mean()
+        bright = light[inside & (distance > PLATEAU)]
+        level[inside] = bright.mean() if bright.size else np.nan
     return measure.edge(distance[chosen], angle[chosen], (light / level)[chosen], REACH, STEP * max(1, 320 / picture.width),
                         PLATEAU)
 

@@ -70,10 +70,11 @@ def report(run):
             entry = numbers.setdefault(f"c_{fraction}", {}).setdefault(model, {})
             for word, light, colour, side in (("green", green, GREEN, 1), ("red", red, RED, -1)):
                 centres, profile, width, error = borders(result, light, side)
-                bright = np.nanmean(profile[centres > PLATEAU])
+                bright, dark = np.nanmean(profile[centres > PLATEAU]), np.nanmean(profile[centres < -PLATEAU])
                 axis.plot(side * centres, profile / bright, style, color=colour, label=f"{word}, {model}: {width:.2f} mm")
                 entry[word] = {"edge_width_mm": width, "standard_error_mm": error, "luminance_cd_m2": float(bright),
-                               "share_1_mm_beyond": float(np.interp(-1, centres, profile / bright))}
+                               "share_1_mm_beyond": float((np.interp(-1, centres, profile) - dark) / (bright - dark)),
+                               "share_in_the_other_tile": float(dark / bright)}
         axis.set_title(f"c = {fraction}: 10-90 % widths")
         axis.set_xlabel("distance from the border, green tile positive [mm]")
         axis.legend(fontsize=8)
@@ -85,7 +86,7 @@ def report(run):
     return [page.Section(
         "fig15", "Figure 15: neighbouring tiles",
         "Green fluorescence bleeds into the red tiles at the borders, and red into the green, for c = 0.25 and c = 0.75.",
-        f"1 mm beyond its border a green tile's light still has {100 * low['green']['share_1_mm_beyond']:.1f} % (c = 0.25) and "
+        f"1 mm beyond its border the light of a green tile still has {100 * low['green']['share_1_mm_beyond']:.1f} % (c = 0.25) and "
         f"{100 * high['green']['share_1_mm_beyond']:.1f} % (c = 0.75) of its brightness, a red one's "
         f"{100 * low['red']['share_1_mm_beyond']:.1f} % and {100 * high['red']['share_1_mm_beyond']:.1f} %. 10-90 % widths, "
         f"green: {low['green']['edge_width_mm']:.2f} and {high['green']['edge_width_mm']:.2f} mm. Three times c is "

@@ -57,7 +57,7 @@ def edge(distance, along, value, reach, step, plateau, pieces=8):
     the edge."""
     edges = np.arange(-reach, reach + step / 2, step)
     centres = (edges[1:] + edges[:-1]) / 2
-    inside = np.isfinite(distance) & (np.abs(distance) <= reach) & np.isfinite(along)
+    inside = np.isfinite(distance) & (np.abs(distance) <= reach) & np.isfinite(along) & np.isfinite(value)
     distance, along, value = distance[inside], along[inside], value[inside]
     profile = binned(distance, value, edges)
     limits = np.quantile(along, np.linspace(0, 1, pieces + 1)) if len(along) else np.zeros(pieces + 1)
@@ -73,7 +73,7 @@ def edge(distance, along, value, reach, step, plateau, pieces=8):
 def slope(passes, errors):
     """Slope of log error over log passes by least squares, and its standard error."""
     x, y = np.log(passes), np.log(errors)
-    (a, b), residuals = np.polyfit(x, y, 1), None
+    a, b = np.polyfit(x, y, 1)
     residuals = y - (a * x + b)
     spread = np.sum((x - x.mean())**2)
     error = np.sqrt(np.sum(residuals**2) / (len(x) - 2) / spread) if len(x) > 2 else float("nan")
