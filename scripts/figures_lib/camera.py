@@ -25,7 +25,7 @@ def rays(scene, width, height):
 
 
 def on_plane(scene, width, height, y_mm):
-    """x and z [mm], each [height, width], of what each pixel sees of the plane at height y_mm; nan above the horizon."""
+    """x and z [mm], each [height, width], of what pixels see of the plane at height y_mm; nan above the horizon."""
     position, directions = rays(scene, width, height)
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (y_mm - position[1]) / directions[..., 1]

@@ -39,7 +39,7 @@ def _channels(value):
     names, at = [], 0
     while value[at]:
         name, at = _text(value, at)
-        kind, = struct.unpack_from("<i", value, at)
+        (kind,) = struct.unpack_from("<i", value, at)
         if kind != FLOAT:
             raise ValueError(f"channel {name} is not of 32-bit floats")
         names.append(name)
@@ -52,8 +52,8 @@ def _header(data):
     while data[at]:
         name, at = _text(data, at)
         kind, at = _text(data, at)
-        size, = struct.unpack_from("<i", data, at)
-        value = data[at + 4:at + 4 + size]
+        (size,) = struct.unpack_from("<i", data, at)
+        value = data[at + 4 : at + 4 + size]
         at += 4 + size
         if kind in NUMBERS:
             attributes[name] = struct.unpack(NUMBERS[kind], value)[0]
@@ -100,8 +100,8 @@ def read(path):
         first, size = struct.unpack_from("<ii", data, offset)
         first -= top
         count = min(lines, height - first)
-        block = _unzip(data[offset + 8:offset + 8 + size], count * len(names) * width * 4)
-        planes[first:first + count] = np.frombuffer(block, "<f4").reshape(count, len(names), width)
+        block = _unzip(data[offset + 8 : offset + 8 + size], count * len(names) * width * 4)
+        planes[first : first + count] = np.frombuffer(block, "<f4").reshape(count, len(names), width)
     layers = {}
     for name in {channel.rpartition(".")[0] for channel in names}:
         prefix = name + "." if name else ""

@@ -19,6 +19,7 @@ GREEN, RED, VIOLET = "#2a9d4b", "#c8324b", "#6a4bc8"
 @dataclasses.dataclass
 class Run:
     """settings: Settings; results: of all jobs, by name; folder: of the page; stokes: the program."""
+
     settings: object
     results: dict
     folder: pathlib.Path
@@ -51,8 +52,12 @@ def base(name, settings):
 
 def job(settings, name, scene, **changes):
     """A Job with the settings' passes, photons and size."""
-    return Job(**{**dict(name=name, scene=scene, passes=settings.passes, photons=settings.photons, size=settings.size),
-                  **changes})
+    return Job(
+        **{
+            **dict(name=name, scene=scene, passes=settings.passes, photons=settings.photons, size=settings.size),
+            **changes,
+        }
+    )
 
 
 def exposure_of(name):

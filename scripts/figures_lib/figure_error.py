@@ -21,8 +21,11 @@ FIRST_PASSES = 4  # where fits begin: the first few passes see few wavelengths
 def variant(settings, name, word):
     """The scene, with or without scattering in all of it."""
     if name == "mask":
-        return figure_masks.scene(settings, "cat", "545", True) if word == "with" else \
-            figure_masks.adjusted(settings, "cat", "545")
+        return (
+            figure_masks.scene(settings, "cat", "545", True)
+            if word == "with"
+            else figure_masks.adjusted(settings, "cat", "545")
+        )
     prisms = base("prisms", settings)
     changes = {}
     for row in ("front", "back"):
@@ -33,15 +36,27 @@ def variant(settings, name, word):
 
 
 def truth(settings, name, word):
-    return job(settings, f"truth_{name}_{word}", variant(settings, name, word), passes=settings.truth_passes,
-               size=settings.half, seed=TRUTH_SEED)
+    return job(
+        settings,
+        f"truth_{name}_{word}",
+        variant(settings, name, word),
+        passes=settings.truth_passes,
+        size=settings.half,
+        seed=TRUTH_SEED,
+    )
 
 
 def curve(settings, name, word, seed):
     reference = f"truth_{name}_{word}"
-    return job(settings, f"curve_{name}_{word}_{seed}", variant(settings, name, word), size=settings.half, seed=seed,
-               flags=lambda results: ["--rmse-against", results[reference].exr, "--csv", "CURVE"],
-               references=lambda results: [results[reference].exr])
+    return job(
+        settings,
+        f"curve_{name}_{word}_{seed}",
+        variant(settings, name, word),
+        size=settings.half,
+        seed=seed,
+        flags=lambda results: ["--rmse-against", results[reference].exr, "--csv", "CURVE"],
+        references=lambda results: [results[reference].exr],
+    )
 
 
 def grain_passes(settings):
@@ -50,8 +65,14 @@ def grain_passes(settings):
 
 
 def at(settings, word, passes):
-    return job(settings, f"fig14_{word}_{passes}", variant(settings, "mask", word), size=settings.half, passes=passes,
-               seed=FIRST_SEED)
+    return job(
+        settings,
+        f"fig14_{word}_{passes}",
+        variant(settings, "mask", word),
+        size=settings.half,
+        passes=passes,
+        seed=FIRST_SEED,
+    )
 
 
 def seeds(settings):
@@ -96,16 +117,29 @@ def measured(run, name, axis):
         errors, own = errors / scale, own / scale
         corrected, truth_error = corrected / scale, truth_error / scale
         numbers[word] = {
-            "slope": slope, "slope_error": error, "slope_as_measured": measure.slope(passes[late], errors[late])[0],
-            "truth_relative_rmse": truth_error, "mean_luminance_cd_m2": scale, "passes": passes.tolist(),
-            "relative_rmse": errors.tolist(), "relative_rmse_corrected": corrected.tolist()}
+            "slope": slope,
+            "slope_error": error,
+            "slope_as_measured": measure.slope(passes[late], errors[late])[0],
+            "truth_relative_rmse": truth_error,
+            "mean_luminance_cd_m2": scale,
+            "passes": passes.tolist(),
+            "relative_rmse": errors.tolist(),
+            "relative_rmse_corrected": corrected.tolist(),
+        }
         fitted[word] = passes[late], corrected[late]
-        axis.loglog(passes, corrected, "o-", color=COLOURS[word], markersize=4,
-                    label=f"{words}: slope {slope:.2f} ± {error:.2f}")
+        axis.loglog(
+            passes,
+            corrected,
+            "o-",
+            color=COLOURS[word],
+            markersize=4,
+            label=f"{words}: slope {slope:.2f} ± {error:.2f}",
+        )
         for errors_of_seed in own:
             axis.loglog(passes, errors_of_seed, ":", color=COLOURS[word], linewidth=0.8)
     numbers["pass_ratio"], numbers["pass_ratio_error"] = measure.pass_ratio(
-        fitted["with"][0], fitted["with"][1], fitted["without"][1])
+        fitted["with"][0], fitted["with"][1], fitted["without"][1]
+    )
     axis.set_xlabel("passes")
     axis.set_title(SCENES[name])
     axis.legend(fontsize=8)
@@ -122,11 +156,19 @@ def grain(run, axis):
         errors = errors / truth_rgb.dot(measure.XYZ_OF_RGB[1]).mean()
         slope, error = measure.slope(passes, errors)
         numbers[word] = {"slope": slope, "slope_error": error, "passes": passes, "relative_rmse": list(errors)}
-        axis.loglog(passes, errors, "s--", color=COLOURS[word], markersize=4, markerfacecolor="none",
-                    label=f"grain alone: slope {slope:.2f} ± {error:.2f}")
+        axis.loglog(
+            passes,
+            errors,
+            "s--",
+            color=COLOURS[word],
+            markersize=4,
+            markerfacecolor="none",
+            label=f"grain alone: slope {slope:.2f} ± {error:.2f}",
+        )
     axis.legend(fontsize=8)
     numbers["pass_ratio"], numbers["pass_ratio_error"] = measure.pass_ratio(
-        passes, numbers["with"]["relative_rmse"], numbers["without"]["relative_rmse"])
+        passes, numbers["with"]["relative_rmse"], numbers["without"]["relative_rmse"]
+    )
     return numbers
 
 
@@ -136,21 +178,35 @@ def report(run):
     axes[0].set_ylabel("RMSE / mean luminance")
     mask, prisms = found["mask"], found["prisms"]
     mask["grain"] = grain(run, axes[0])
-    numbers = {"pass_ratio": mask["pass_ratio"], "pass_ratio_error": mask["pass_ratio_error"],
-               "slope_with": mask["with"]["slope"], "slope_without": mask["without"]["slope"],
-               "slope_with_error": mask["with"]["slope_error"], "slope_without_error": mask["without"]["slope_error"],
-               "truth_passes": run.settings.truth_passes, **found}
+    numbers = {
+        "pass_ratio": mask["pass_ratio"],
+        "pass_ratio_error": mask["pass_ratio_error"],
+        "slope_with": mask["with"]["slope"],
+        "slope_without": mask["without"]["slope"],
+        "slope_with_error": mask["with"]["slope_error"],
+        "slope_without_error": mask["without"]["slope_error"],
+        "truth_passes": run.settings.truth_passes,
+        **found,
+    }
     reduction = "" if run.settings.truth_passes >= 10000 else " (the paper: 10,000)"
-    return [page.Section(
-        "fig14", "Figure 14: error against passes",
-        "RMSE falls on a straight line in log-log; for equal error scattering takes about 3.5 times as many passes.",
-        f"Mask: slopes {_slope(mask, 'with')} with and {_slope(mask, 'without')} without scattering, passes for equal error "
-        f"{_ratio(mask)} times with scattering. Prisms: {_slope(prisms, 'with')} and {_slope(prisms, 'without')}, "
-        f"{_ratio(prisms)} times. Root mean square over {run.settings.curve_seeds} seeds, over pixels and X, Y, Z, against "
-        f"truths of {run.settings.truth_passes} passes{reduction} and another seed. The truth errs too: as both errors follow "
-        "one power law and are independent, its part is fitted and taken off (points); dotted are the seeds as measured. "
-        "Errors are relative to the mean luminance, so that both are compared at equal brightness. Pictures of half the width.",
-        verdict(mask), [[run.plot("fig14", drawing, "Error over all pixels, relative to the mean luminance.")]], numbers)]
+    return [
+        page.Section(
+            "fig14",
+            "Figure 14: error against passes",
+            "RMSE falls on a straight line in log-log; for equal error scattering takes about 3.5 times as many"
+            " passes.",
+            f"Mask: slopes {_slope(mask, 'with')} with and {_slope(mask, 'without')} without scattering, passes for"
+            f" equal error {_ratio(mask)} times with scattering. Prisms: {_slope(prisms, 'with')} and"
+            f" {_slope(prisms, 'without')}, {_ratio(prisms)} times. Root mean square over {run.settings.curve_seeds}"
+            f" seeds, over pixels and X, Y, Z, against truths of {run.settings.truth_passes} passes{reduction} and"
+            " another seed. The truth errs too: as both errors follow one power law and are independent, its part is"
+            " fitted and taken off (points); dotted are the seeds as measured. Errors are relative to the mean"
+            " luminance, so that both are compared at equal brightness. Pictures of half the width.",
+            verdict(mask),
+            [[run.plot("fig14", drawing, "Error over all pixels, relative to the mean luminance.")]],
+            numbers,
+        )
+    ]
 
 
 def _slope(numbers, word):
@@ -164,11 +220,12 @@ def _ratio(numbers):
 def verdict(mask):
     ratio = mask["pass_ratio"]
     grain_words = (
-        "Two things err: the grain of the photons, which scattering makes coarser, and the brightness and hue of the whole "
-        "picture, as 16 of 481 wavelengths are drawn in each pass for all pixels at once, with scattering or without. With "
-        f"the whole picture's brightness and hue fitted to the truth, the grain alone needs {_ratio(mask['grain'])} times the "
-        "passes. How much the grain counts depends on the photons of a pass, which the paper does not state: more of them "
-        "hide the cost of scattering behind the wavelengths'.")
+        "Two things err: the grain of the photons, which scattering makes coarser, and the brightness and hue of the"
+        " whole picture, as 16 of 481 wavelengths are drawn in each pass for all pixels at once, with scattering or"
+        " without. With the whole picture's brightness and hue fitted to the truth, the grain alone needs"
+        f" {_ratio(mask['grain'])} times the passes. How much the grain counts depends on the photons of a pass,"
+        " which the paper does not state: more of them hide the cost of scattering behind the wavelengths'."
+    )
     if abs(ratio / PAPER_RATIO - 1) < 0.3:
         return f"Same: scattering takes {ratio:.1f} times as many passes. " + grain_words
     if ratio > 1.1:

@@ -14,9 +14,17 @@ VIEWS = {
 
 def jobs(settings):
     prisms = base("prisms", settings)
-    return [job(settings, f"fig1{view}_{model}", scenes.change(prisms, changes), transport=model,
-                exposure=None if view == "a" else exposure_of(f"fig1a_{model}"))
-            for model in MODELS for view, changes in VIEWS.items()]
+    return [
+        job(
+            settings,
+            f"fig1{view}_{model}",
+            scenes.change(prisms, changes),
+            transport=model,
+            exposure=None if view == "a" else exposure_of(f"fig1a_{model}"),
+        )
+        for model in MODELS
+        for view, changes in VIEWS.items()
+    ]
 
 
 def report(run):
@@ -29,17 +37,25 @@ def report(run):
         numbers[model] = {
             "mean_luminance_cd_m2": float(whole.luminance().mean()),
             "share_of_luminance": {name: value / sum(light.values()) for name, value in light.items()},
-            "exposure_ev": run.results[f"fig1a_{model}"].exposure_ev}
+            "exposure_ev": run.results[f"fig1a_{model}"].exposure_ev,
+        }
         numbers[model]["rmse_view_b_against_a"] = measure.rmse(run.results[f"fig1b_{model}"].picture().rgb, whole.rgb)
     share = {model: numbers[model]["share_of_luminance"]["fluorescence"] for model in MODELS}
-    return [page.Section(
-        "fig1", "Figure 1: prisms with quantum dots",
-        "Six prisms of marble with Qdot 545, 585 and 655 under black light: the front row with subsurface scattering, the "
-        "row behind with fluorescence of the surface alone; white figures on them are lit by the prisms.",
-        f"{run.settings.passes} passes. Fluorescence directly seen is {100 * share['paper']:.0f} % of the luminance "
-        f"({100 * share['conserving']:.0f} % in model conserving); the rest is light from diffuse surfaces and scattered "
-        "black light.",
-        "The same kind of picture: saturated prisms, whose colours reach the white figures and the floor. The positions, the "
-        "lamp's spectrum and the white figures' places are ours, as the paper does not give them. Model conserving gives "
-        "the translucent row more scattered violet light, which the paper's tables lose; each model has its own exposure.",
-        rows, numbers)]
+    return [
+        page.Section(
+            "fig1",
+            "Figure 1: prisms with quantum dots",
+            "Six prisms of marble with Qdot 545, 585 and 655 under black light: the front row with subsurface"
+            " scattering, the row behind with fluorescence of the surface alone; white figures on them are lit by the"
+            " prisms.",
+            f"{run.settings.passes} passes. Fluorescence directly seen is {100 * share['paper']:.0f} % of the"
+            f" luminance ({100 * share['conserving']:.0f} % in model conserving); the rest is light from diffuse"
+            " surfaces and scattered black light.",
+            "The same kind of picture: saturated prisms, whose colours reach the white figures and the floor. The"
+            " positions, the lamp's spectrum and the white figures' places are ours, as the paper does not give them."
+            " Model conserving gives the translucent row more scattered violet light, which the paper's tables lose;"
+            " each model has its own exposure.",
+            rows,
+            numbers,
+        )
+    ]

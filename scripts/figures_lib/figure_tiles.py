@@ -8,8 +8,8 @@ from figures_lib.figure import GREEN, MODELS, RED, base, exposure_of, job
 KEYS = ("fig15",)
 
 FRACTIONS = (0.25, 0.75)
-TILE, BORDERS = 14, (-14, 0, 14)     # [mm]: edge of a tile; x of the borders inside the slab
-MIDDLE = 4                           # [mm] from a row's middle line that are looked at
+TILE, BORDERS = 14, (-14, 0, 14)  # [mm]: edge of a tile; x of the borders inside the slab
+MIDDLE = 4  # [mm] from a row's middle line that are looked at
 REACH, PLATEAU, STEP = 6.6, 4.6, 0.2
 
 
@@ -19,11 +19,23 @@ def name(fraction, model):
 
 def jobs(settings):
     tiles = base("tiles", settings)
+
     def scene(fraction):
-        return scenes.change(tiles, {f"materials.{colour}.fluorescent_fraction": fraction for colour in ("green", "red")})
-    return [job(settings, name(fraction, model), scene(fraction), transport=model,
-                exposure=None if fraction == FRACTIONS[-1] else exposure_of(name(FRACTIONS[-1], model)))
-            for model in MODELS for fraction in reversed(FRACTIONS)]
+        return scenes.change(
+            tiles, {f"materials.{colour}.fluorescent_fraction": fraction for colour in ("green", "red")}
+        )
+
+    return [
+        job(
+            settings,
+            name(fraction, model),
+            scene(fraction),
+            transport=model,
+            exposure=None if fraction == FRACTIONS[-1] else exposure_of(name(FRACTIONS[-1], model)),
+        )
+        for model in MODELS
+        for fraction in reversed(FRACTIONS)
+    ]
 
 
 def emission_rgb(dot):
@@ -71,10 +83,16 @@ def report(run):
             for word, light, colour, side in (("green", green, GREEN, 1), ("red", red, RED, -1)):
                 centres, profile, width, error = borders(result, light, side)
                 bright, dark = np.nanmean(profile[centres > PLATEAU]), np.nanmean(profile[centres < -PLATEAU])
-                axis.plot(side * centres, profile / bright, style, color=colour, label=f"{word}, {model}: {width:.2f} mm")
-                entry[word] = {"edge_width_mm": width, "standard_error_mm": error, "luminance_cd_m2": float(bright),
-                               "share_1_mm_beyond": float((np.interp(-1, centres, profile) - dark) / (bright - dark)),
-                               "share_in_the_other_tile": float(dark / bright)}
+                axis.plot(
+                    side * centres, profile / bright, style, color=colour, label=f"{word}, {model}: {width:.2f} mm"
+                )
+                entry[word] = {
+                    "edge_width_mm": width,
+                    "standard_error_mm": error,
+                    "luminance_cd_m2": float(bright),
+                    "share_1_mm_beyond": float((np.interp(-1, centres, profile) - dark) / (bright - dark)),
+                    "share_in_the_other_tile": float(dark / bright),
+                }
         axis.set_title(f"c = {fraction}: 10-90 % widths")
         axis.set_xlabel("distance from the border, green tile positive [mm]")
         axis.legend(fontsize=8)
@@ -82,18 +100,34 @@ def report(run):
     low, high = (numbers[f"c_{fraction}"]["paper"] for fraction in FRACTIONS)
     gain = high["green"]["luminance_cd_m2"] / low["green"]["luminance_cd_m2"]
     numbers["brightness_ratio_paper"] = gain
-    rows = [[run.picture(name(fraction, model), f"c = {fraction}, {model}") for fraction in FRACTIONS] for model in MODELS]
-    return [page.Section(
-        "fig15", "Figure 15: neighbouring tiles",
-        "Green fluorescence bleeds into the red tiles at the borders, and red into the green, for c = 0.25 and c = 0.75.",
-        f"1 mm beyond its border the light of a green tile still has {100 * low['green']['share_1_mm_beyond']:.1f} % (c = 0.25) and "
-        f"{100 * high['green']['share_1_mm_beyond']:.1f} % (c = 0.75) of its brightness, a red one's "
-        f"{100 * low['red']['share_1_mm_beyond']:.1f} % and {100 * high['red']['share_1_mm_beyond']:.1f} %. 10-90 % widths, "
-        f"green: {low['green']['edge_width_mm']:.2f} and {high['green']['edge_width_mm']:.2f} mm. Three times c is "
-        f"{gain:.2f} times as bright.",
-        "Same: light bleeds over the borders, by the same distance for both c (c scales the fluorescence, not where it leaves), "
-        f"and green shows more than red, being {low['green']['luminance_cd_m2'] / low['red']['luminance_cd_m2']:.1f} times as "
-        f"bright. Widths include the density estimate's radius, {figure.radius_note(run.results[name(0.25, 'paper')])} in the last pass.",
-        [*rows, [run.plot("fig15", drawing, "The two dots' fluorescence, unmixed by their colours, across the borders.")]],
-        numbers)]
-
+    rows = [
+        [run.picture(name(fraction, model), f"c = {fraction}, {model}") for fraction in FRACTIONS] for model in MODELS
+    ]
+    return [
+        page.Section(
+            "fig15",
+            "Figure 15: neighbouring tiles",
+            "Green fluorescence bleeds into the red tiles at the borders, and red into the green, for c = 0.25 and c"
+            " = 0.75.",
+            "1 mm beyond its border the light of a green tile still has"
+            f" {100 * low['green']['share_1_mm_beyond']:.1f} % (c = 0.25) and"
+            f" {100 * high['green']['share_1_mm_beyond']:.1f} % (c = 0.75) of its brightness, a red one's"
+            f" {100 * low['red']['share_1_mm_beyond']:.1f} % and {100 * high['red']['share_1_mm_beyond']:.1f} %."
+            f" 10-90 % widths, green: {low['green']['edge_width_mm']:.2f} and {high['green']['edge_width_mm']:.2f}"
+            f" mm. Three times c is {gain:.2f} times as bright.",
+            "Same: light bleeds over the borders, by the same distance for both c (c scales the fluorescence, not"
+            " where it leaves), and green shows more than red, being"
+            f" {low['green']['luminance_cd_m2'] / low['red']['luminance_cd_m2']:.1f} times as bright. Widths include"
+            f" the density estimate's radius, {figure.radius_note(run.results[name(0.25, 'paper')])} in the last"
+            " pass.",
+            [
+                *rows,
+                [
+                    run.plot(
+                        "fig15", drawing, "The two dots' fluorescence, unmixed by their colours, across the borders."
+                    )
+                ],
+            ],
+            numbers,
+        )
+    ]

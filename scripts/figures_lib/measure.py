@@ -2,8 +2,9 @@
 
 import numpy as np
 
-XYZ_OF_RGB = np.array([[0.4123908, 0.3575843, 0.1804808], [0.2126390, 0.7151687, 0.0721923],
-                       [0.0193308, 0.1191948, 0.9505322]])  # linear Rec. 709 to CIE 1931
+XYZ_OF_RGB = np.array(
+    [[0.4123908, 0.3575843, 0.1804808], [0.2126390, 0.7151687, 0.0721923], [0.0193308, 0.1191948, 0.9505322]]
+)  # linear Rec. 709 to CIE 1931
 
 
 def chromaticity(rgb):
@@ -14,7 +15,7 @@ def chromaticity(rgb):
 
 def rmse(a, b):
     """Root mean square over pixels and over X, Y, Z of the difference of two pictures in Rec. 709, cd/m^2."""
-    return float(np.sqrt(np.mean(((a - b) @ XYZ_OF_RGB.T)**2)))
+    return float(np.sqrt(np.mean(((a - b) @ XYZ_OF_RGB.T) ** 2)))
 
 
 def binned(distance, value, edges):
@@ -27,8 +28,8 @@ def binned(distance, value, edges):
 
 
 def edge_width(centres, profile, plateau):
-    """10-90 % width [mm] of a rise from dark (negative distance) to bright. The levels are the means beyond `plateau` mm
-    on either side; the crossings are those next to the middle of the rise, between bins on straight lines."""
+    """10-90 % width [mm] of a rise from dark (negative distance) to bright. The levels are the means beyond `plateau`
+    mm on either side; the crossings are those next to the middle of the rise, between bins on straight lines."""
     filled = np.isfinite(profile)
     x, y = np.asarray(centres)[filled], np.asarray(profile)[filled]
     dark, bright = y[x < -plateau], y[x > plateau]
@@ -52,9 +53,9 @@ def _crossing(x, level, left, value):
 
 
 def edge(distance, along, value, reach, step, plateau, pieces=8):
-    """Profile of value across an edge. distance, along [mm]: of each pixel from the edge, positive on the bright side, and
-    along it. Returns bin centres, the profile, its 10-90 % width and that width's standard error from `pieces` parts of
-    the edge."""
+    """Profile of value across an edge. distance, along [mm]: of each pixel from the edge, positive on the bright side,
+    and along it. Returns bin centres, the profile, its 10-90 % width and that width's standard error from `pieces`
+    parts of the edge."""
     edges = np.arange(-reach, reach + step / 2, step)
     centres = (edges[1:] + edges[:-1]) / 2
     inside = np.isfinite(distance) & (np.abs(distance) <= reach) & np.isfinite(along) & np.isfinite(value)
@@ -75,21 +76,21 @@ def slope(passes, errors):
     x, y = np.log(passes), np.log(errors)
     a, b = np.polyfit(x, y, 1)
     residuals = y - (a * x + b)
-    spread = np.sum((x - x.mean())**2)
+    spread = np.sum((x - x.mean()) ** 2)
     error = np.sqrt(np.sum(residuals**2) / (len(x) - 2) / spread) if len(x) > 2 else float("nan")
     return float(a), float(error)
 
 
 def true_error(passes, errors, truth_passes):
-    """Errors against the limit, from errors against a picture of truth_passes passes and another seed. Both pictures err,
-    independently: errors^2 = a^2 (passes^2s + truth_passes^2s). a and s are fitted to that in logarithms; the truth's part
-    is taken off. Returns the errors and that of the truth."""
+    """Errors against the limit, from errors against a picture of truth_passes passes and another seed. Both pictures
+    err, independently: errors^2 = a^2 (passes^2s + truth_passes^2s). a and s are fitted to that in logarithms; the
+    truth's part is taken off. Returns the errors and that of the truth."""
     passes, errors = np.asarray(passes, float), np.asarray(errors, float)
     best = None
     for s in np.linspace(-1.0, -0.05, 191):
-        shape = 0.5 * np.log(passes**(2 * s) + float(truth_passes)**(2 * s))
+        shape = 0.5 * np.log(passes ** (2 * s) + float(truth_passes) ** (2 * s))
         offset = np.mean(np.log(errors) - shape)
-        miss = np.sum((np.log(errors) - shape - offset)**2)
+        miss = np.sum((np.log(errors) - shape - offset) ** 2)
         if best is None or miss < best[0]:
             best = miss, s, np.exp(offset)
     _, s, a = best
@@ -98,9 +99,9 @@ def true_error(passes, errors, truth_passes):
 
 
 def pass_ratio(passes, errors_a, errors_b):
-    """How many times the passes of curve b curve a needs for the same error, and the standard error of that. Both curves
-    have the same passes and, seed by seed, the same wavelengths, so their gap in logarithms is far better known than
-    either of them; divided by their common slope it is the ratio."""
+    """How many times the passes of curve b curve a needs for the same error, and its standard error. Both curves have
+    the same passes and, seed by seed, the same wavelengths, so their gap in logarithms is far better known than either
+    of them; divided by their common slope it is the ratio."""
     x = np.log(np.asarray(passes, float))
     curves = [np.log(np.asarray(errors)) for errors in (errors_a, errors_b)]
     gaps = curves[0] - curves[1]
@@ -121,4 +122,4 @@ def rmse_of_shape(picture, truth):
     the brightness and hue of the whole picture does not count, the grain does."""
     xyz, wanted = (image.reshape(-1, 3) @ XYZ_OF_RGB.T for image in (picture, truth))
     gain = np.sum(xyz * wanted, axis=0) / np.maximum(np.sum(xyz**2, axis=0), 1e-300)
-    return float(np.sqrt(np.mean((gain * xyz - wanted)**2)))
+    return float(np.sqrt(np.mean((gain * xyz - wanted) ** 2)))

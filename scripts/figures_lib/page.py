@@ -8,7 +8,8 @@ import pathlib
 import shutil
 
 STYLE = """
-body { font: 16px/1.5 Georgia, serif; margin: 2em auto; max-width: 1200px; padding: 0 1em; color: #222; background: #fcfcfa; }
+body { font: 16px/1.5 Georgia, serif; margin: 2em auto; max-width: 1200px; padding: 0 1em; color: #222;
+       background: #fcfcfa; }
 h1, h2, th, figcaption, nav { font-family: Helvetica, Arial, sans-serif; }
 h2 { border-top: 1px solid #ccc; padding-top: 1em; margin-top: 2em; }
 .row { display: flex; flex-wrap: wrap; gap: 1em; align-items: flex-start; }
@@ -19,7 +20,8 @@ figure.rendered img { background: #000; image-rendering: auto; }
 figcaption { font-size: 13px; color: #444; padding-top: .3em; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .2em 1em; }
 dt { font-weight: bold; } dd { margin: 0; }
-table { border-collapse: collapse; font-size: 14px; } td, th { border-bottom: 1px solid #ddd; padding: .15em .8em; text-align: left; }
+table { border-collapse: collapse; font-size: 14px; }
+td, th { border-bottom: 1px solid #ddd; padding: .15em .8em; text-align: left; }
 """
 
 
@@ -27,19 +29,20 @@ table { border-collapse: collapse; font-size: 14px; } td, th { border-bottom: 1p
 class Picture:
     file: pathlib.Path
     caption: str
-    rendered: bool = True   # a render; otherwise a plot
+    rendered: bool = True  # a render; otherwise a plot
     wide: bool = False
 
 
 @dataclasses.dataclass
 class Section:
     """A figure of the paper. numbers go to figures.json below its key, and into a table."""
+
     key: str
     title: str
-    paper: str              # what the paper shows or reports
+    paper: str  # what the paper shows or reports
     measured: str
-    verdict: str            # same or not, and why
-    rows: list              # lists of Pictures
+    verdict: str  # same or not, and why
+    rows: list  # lists of Pictures
     numbers: dict
 
     def html(self, folder):
@@ -54,8 +57,10 @@ class Section:
         text.append("</dl>")
         if self.numbers:
             text.append("<details><summary>Numbers</summary><table>")
-            text += [f"<tr><td>{html.escape(self.key + '.' + name)}</td><td>{html.escape(_shown(value))}</td></tr>"
-                     for name, value in flat(self.numbers)]
+            text += [
+                f"<tr><td>{html.escape(self.key + '.' + name)}</td><td>{html.escape(_shown(value))}</td></tr>"
+                for name, value in flat(self.numbers)
+            ]
             text.append("</table></details>")
         return "\n".join(text + ["</section>"])
 
@@ -63,8 +68,10 @@ class Section:
 def _figure(picture, folder):
     kinds = " ".join(kind for kind, is_kind in (("rendered", picture.rendered), ("wide", picture.wide)) if is_kind)
     source = pathlib.Path(picture.file).relative_to(folder).as_posix()
-    return (f'<figure class="{kinds}"><img src="{html.escape(source)}" alt="{html.escape(picture.caption)}" loading="lazy">'
-            f"<figcaption>{html.escape(picture.caption)}</figcaption></figure>")
+    return (
+        f'<figure class="{kinds}"><img src="{html.escape(source)}" alt="{html.escape(picture.caption)}"'
+        f' loading="lazy"><figcaption>{html.escape(picture.caption)}</figcaption></figure>'
+    )
 
 
 def _shown(value):
@@ -97,9 +104,12 @@ def write(folder, heading, notes, sections, numbers):
     """index.html and figures.json."""
     links = " · ".join(f'<a href="#{s.key}">{html.escape(s.title.split(":")[0])}</a>' for s in sections)
     body = "\n".join(section.html(folder) for section in sections)
-    page = (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{html.escape(heading)}</title>'
-            f"<style>{STYLE}</style></head><body><h1>{html.escape(heading)}</h1>"
-            + "".join(f"<p>{html.escape(note)}</p>" for note in notes) + f"<nav>{links}</nav>\n{body}\n</body></html>\n")
+    page = (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{html.escape(heading)}</title>'
+        f"<style>{STYLE}</style></head><body><h1>{html.escape(heading)}</h1>"
+        + "".join(f"<p>{html.escape(note)}</p>" for note in notes)
+        + f"<nav>{links}</nav>\n{body}\n</body></html>\n"
+    )
     _replace(folder / "index.html", page)
     _replace(folder / "figures.json", json.dumps(finite(numbers), indent=1) + "\n")
 

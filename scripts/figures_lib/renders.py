@@ -14,18 +14,19 @@ from figures_lib import exr, scenes
 @dataclasses.dataclass
 class Job:
     """A render. scene, passes, exposure and flags may be functions of the results so far {name: Result}."""
+
     name: str
-    scene: object                    # dict, as of scenes.load
+    scene: object  # dict, as of scenes.load
     passes: object
     photons: int
-    size: tuple                      # width, height
+    size: tuple  # width, height
     transport: str = "paper"
     seed: int = 1
-    exposure: object = None          # EV of the PNG; None: automatic
-    flags: object = ()               # more words for the command line
-    references: object = ()          # files that flags name
-    weight: float = 1.0              # time of a pass, relative to other jobs of its photons and pixels
-    expected_passes: int = 0         # where passes is a function
+    exposure: object = None  # EV of the PNG; None: automatic
+    flags: object = ()  # more words for the command line
+    references: object = ()  # files that flags name
+    weight: float = 1.0  # time of a pass, relative to other jobs of its photons and pixels
+    expected_passes: int = 0  # where passes is a function
 
     @property
     def cost(self):
@@ -37,10 +38,11 @@ class Job:
 @dataclasses.dataclass
 class Result:
     """What a Job gave. processor_s: processor time of the whole process."""
+
     scene: dict
     exr: pathlib.Path
     png: pathlib.Path
-    curve: pathlib.Path              # CSV of --rmse-against, where that was asked for
+    curve: pathlib.Path  # CSV of --rmse-against, where that was asked for
     stats: dict
     processor_s: float
 
@@ -86,8 +88,18 @@ class Renderer:
     def _result(self, job):
         scene, passes, exposure = (self._value(v) for v in (job.scene, job.passes, job.exposure))
         flags = [str(word) for word in self._value(job.flags)]
-        words = ["--passes", str(passes), "--photons", str(job.photons), "--size", "{}x{}".format(*job.size),
-                 "--transport", job.transport, "--seed", str(job.seed)]
+        words = [
+            "--passes",
+            str(passes),
+            "--photons",
+            str(job.photons),
+            "--size",
+            "{}x{}".format(*job.size),
+            "--transport",
+            job.transport,
+            "--seed",
+            str(job.seed),
+        ]
         if exposure is not None:
             words += ["--exposure", repr(float(exposure))]
         references = [hashlib.sha256(pathlib.Path(r).read_bytes()).hexdigest() for r in self._value(job.references)]
@@ -105,8 +117,20 @@ class Renderer:
         scene = dict(scene, comment=f"As rendered for {job.name}.")
         files["scene.json"].write_text(json.dumps(scene, indent=1), encoding="utf-8")
         stats = files["json"].with_suffix(".stats")
-        command = [str(self.stokes), "render", str(files["scene.json"]), *words, *flags, "-o", str(files["exr"]),
-                   "--png", str(files["png"]), "--stats", str(stats), "--quiet"]
+        command = [
+            str(self.stokes),
+            "render",
+            str(files["scene.json"]),
+            *words,
+            *flags,
+            "-o",
+            str(files["exr"]),
+            "--png",
+            str(files["png"]),
+            "--stats",
+            str(stats),
+            "--quiet",
+        ]
         if self.threads:
             command += ["--threads", str(self.threads)]
         start = time.monotonic()
@@ -122,8 +146,12 @@ class Renderer:
             raise subprocess.CalledProcessError(code, command)
         self.rendered_s += time.monotonic() - start
         self.rendered_cost += job.cost
-        kept = {"name": job.name, "words": words + flags, "processor_s": usage.ru_utime + usage.ru_stime,
-                "stats": json.loads(stats.read_text(encoding="utf-8"))}
+        kept = {
+            "name": job.name,
+            "words": words + flags,
+            "processor_s": usage.ru_utime + usage.ru_stime,
+            "stats": json.loads(stats.read_text(encoding="utf-8")),
+        }
         stats.unlink()
         # Last, and by renaming: where this file is, the others are whole.
         unfinished = files["json"].with_suffix(".tmp")
@@ -133,5 +161,6 @@ class Renderer:
 
 def _clock(seconds):
     minutes = int(seconds / 60 + 0.5)
-    return f"{minutes // 60} h {minutes % 60:02d} min" if minutes >= 60 else f"{minutes} min" if minutes else "a minute"
-
+    return (
+        f"{minutes // 60} h {minutes % 60:02d} min" if minutes >= 60 else f"{minutes} min" if minutes else "a minute"
+    )

@@ -63,11 +63,16 @@ def without_shapes(scene, names):
 
 def fingerprint(scene):
     """Text that changes when the scene, or the content of a file it names, does; comments do not count."""
+
     def of(node):
         if isinstance(node, dict):
-            return {key: _content(value) if key in ("file", "texture") and isinstance(value, str) else of(value)
-                    for key, value in node.items() if key != "comment"}
+            return {
+                key: _content(value) if key in ("file", "texture") and isinstance(value, str) else of(value)
+                for key, value in node.items()
+                if key != "comment"
+            }
         return [of(value) for value in node] if isinstance(node, list) else node
+
     return json.dumps(of(scene), sort_keys=True)
 
 

@@ -6,6 +6,7 @@ import dataclasses
 @dataclasses.dataclass
 class Settings:
     """What all renders have in common."""
+
     name: str
     passes: int
     photons: int
@@ -13,8 +14,8 @@ class Settings:
     height: int
     truth_passes: int
     radius_scale: float = 1.0  # of the scenes' own radius; larger where there are fewer photons
-    probe_passes: int = 16     # of the renders whose brightness or time is measured beforehand
-    curve_seeds: int = 4       # error curves that are averaged
+    probe_passes: int = 16  # of the renders whose brightness or time is measured beforehand
+    curve_seeds: int = 4  # error curves that are averaged
 
     @property
     def size(self):
@@ -33,5 +34,9 @@ class Settings:
 
 
 FULL = Settings("full", passes=1024, photons=262144, width=640, height=480, truth_passes=10000, probe_passes=64)
-QUICK = Settings("quick", passes=64, photons=65536, width=256, height=192, truth_passes=512, radius_scale=1.6, curve_seeds=4)
-TINY = Settings("tiny", passes=4, photons=4096, width=40, height=30, truth_passes=8, radius_scale=5, probe_passes=2, curve_seeds=1)
+QUICK = Settings(
+    "quick", passes=64, photons=65536, width=256, height=192, truth_passes=512, radius_scale=1.6, curve_seeds=4
+)
+TINY = Settings(
+    "tiny", passes=4, photons=4096, width=40, height=30, truth_passes=8, radius_scale=5, probe_passes=2, curve_seeds=1
+)

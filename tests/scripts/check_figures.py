@@ -2,6 +2,7 @@
 
 Usage: check_figures.py STOKES FOLDER    FOLDER is emptied first
 """
+
 import json
 import pathlib
 import re
@@ -10,13 +11,44 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-FIGURES = ("fig1", "fig8", "fig9", "fig10", "fig11", "fig12", "fig13", "fig14", "fig15", "fig16", "fig17", "fig18", "fig19",
-           "fig20")
-NUMBERS = ("fig14.pass_ratio", "fig14.slope_with", "fig14.slope_without", "fig17.edge_width_mm.x1",
-           "fig17.edge_width_mm.x2", "fig20.passes_with", "fig20.passes_without", "fig20.rmse_with_cd_m2",
-           "fig20.rmse_without_cd_m2", "fig12.qdot545.paper.edge_width_mm", "fig15.c_0.25.paper.green.edge_width_mm")
-POSITIVE = ("fig1.paper.mean_luminance_cd_m2", "fig8.F_30.at_1_mm", "fig9.qdot545.peak_nm", "fig11.light_without_over_with.qdot545",
-            "fig14.mask.with.mean_luminance_cd_m2", "fig20.passes_without", "fig20.rmse_with_cd_m2")
+FIGURES = (
+    "fig1",
+    "fig8",
+    "fig9",
+    "fig10",
+    "fig11",
+    "fig12",
+    "fig13",
+    "fig14",
+    "fig15",
+    "fig16",
+    "fig17",
+    "fig18",
+    "fig19",
+    "fig20",
+)
+NUMBERS = (
+    "fig14.pass_ratio",
+    "fig14.slope_with",
+    "fig14.slope_without",
+    "fig17.edge_width_mm.x1",
+    "fig17.edge_width_mm.x2",
+    "fig20.passes_with",
+    "fig20.passes_without",
+    "fig20.rmse_with_cd_m2",
+    "fig20.rmse_without_cd_m2",
+    "fig12.qdot545.paper.edge_width_mm",
+    "fig15.c_0.25.paper.green.edge_width_mm",
+)
+POSITIVE = (
+    "fig1.paper.mean_luminance_cd_m2",
+    "fig8.F_30.at_1_mm",
+    "fig9.qdot545.peak_nm",
+    "fig11.light_without_over_with.qdot545",
+    "fig14.mask.with.mean_luminance_cd_m2",
+    "fig20.passes_without",
+    "fig20.rmse_with_cd_m2",
+)
 
 
 def run(folder):
@@ -34,7 +66,7 @@ def value_of(numbers, path):
         return numbers
     for key in numbers if isinstance(numbers, dict) else ():
         if path == key or path.startswith(key + "."):
-            return value_of(numbers[key], path[len(key) + 1:])
+            return value_of(numbers[key], path[len(key) + 1 :])
     sys.exit(f"figures.json: no {path}")
 
 

@@ -2,6 +2,7 @@
 
 Usage: test_figures_lib.py STOKES
 """
+
 import json
 import pathlib
 import subprocess
@@ -19,8 +20,17 @@ except ImportError as missing:
     print(missing, file=sys.stderr)
     sys.exit(77)
 
-from figures_lib import (camera, exr, figure_masks, figure_sectors, figure_tiles, measure, page,  # noqa: E402
-                         renders, scenes)
+from figures_lib import (
+    camera,
+    exr,
+    figure_masks,
+    figure_sectors,
+    figure_tiles,
+    measure,
+    page,  # noqa: E402
+    renders,
+    scenes,
+)
 
 STOKES = pathlib.Path(sys.argv.pop(1)).resolve()
 EXPONENTIAL_WIDTH = 2 * np.log(5)  # 10-90 % width of a rise exp(x/s)/2, 1 - exp(-x/s)/2, in units of s
@@ -63,7 +73,7 @@ class Curves(unittest.TestCase):
     def test_the_error_of_the_truth_is_taken_off(self):
         passes, own = 2.0 ** np.arange(11), 5.0
         true = own * passes**-0.35
-        seen = np.sqrt(true**2 + (own * 4096**-0.35)**2)
+        seen = np.sqrt(true**2 + (own * 4096**-0.35) ** 2)
         corrected, truth = measure.true_error(passes, seen, 4096)
         self.assertAlmostEqual(truth, own * 4096**-0.35, delta=0.001 * own)
         np.testing.assert_allclose(corrected, true, rtol=0.01)
@@ -153,8 +163,11 @@ class Files(unittest.TestCase):
             self.assertEqual((a.width, a.height), (19, 37))
             self.assertEqual(a.attributes["stokes.passes"], 2)
             np.testing.assert_allclose(sum(v for k, v in a.layers.items() if k), a.rgb, rtol=1e-4, atol=1e-7)
-            compared = json.loads(subprocess.run([STOKES, "compare", one.exr, other.exr, "--json"], check=True,
-                                                 capture_output=True, text=True).stdout)
+            compared = json.loads(
+                subprocess.run(
+                    [STOKES, "compare", one.exr, other.exr, "--json"], check=True, capture_output=True, text=True
+                ).stdout
+            )
             self.assertAlmostEqual(measure.rmse(a.rgb, b.rgb) / compared["layers"]["whole"]["rmse"], 1, places=4)
 
     def test_fingerprints_follow_values_and_files_but_not_comments(self):
@@ -169,8 +182,15 @@ class Files(unittest.TestCase):
     def test_a_page_links_its_pictures_and_escapes_words(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
-            section = page.Section("figX", "Figure X", "a < b", "m", "v", [[page.Picture(folder / "p" / "x.png", "c")]],
-                                   {"a": {"b": float("nan")}})
+            section = page.Section(
+                "figX",
+                "Figure X",
+                "a < b",
+                "m",
+                "v",
+                [[page.Picture(folder / "p" / "x.png", "c")]],
+                {"a": {"b": float("nan")}},
+            )
             page.write(folder, "T", [], [section], {"figX": section.numbers})
             text = (folder / "index.html").read_text()
             self.assertIn('src="p/x.png"', text)
