@@ -27,6 +27,11 @@ class Settings:
         return self.width // 2, self.height // 2
 
     @property
+    def half_square(self):
+        side = self.square[0] // 2
+        return side, side
+
+    @property
     def square(self):
         """A square picture of as many pixels."""
         side = round((self.width * self.height) ** 0.5)
