@@ -44,11 +44,16 @@ def jobs(settings):
     return found
 
 
+def clockwise(x, z):
+    """Degrees clockwise from the bottom (+z) of the picture, seen from above."""
+    return np.degrees(np.arctan2(-x, z))
+
+
 def on_disk(result):
     """x, z [mm] on the disk's face, and the degrees clockwise from the picture's bottom, of each pixel."""
     picture = result.picture()
     x, z = camera.on_plane(result.scene, picture.width, picture.height, TOP)
-    return picture, x, z, np.degrees(np.arctan2(-x, z))
+    return picture, x, z, clockwise(x, z)
 
 
 def sector(angle, k):

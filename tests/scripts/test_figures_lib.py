@@ -43,7 +43,7 @@ def exponential_edge(x, s):
 class Edges(unittest.TestCase):
     def test_width_of_a_ramp(self):
         x = np.arange(-8, 8.05, 0.1)
-        self.assertAlmostEqual(measure.edge_width(x, np.clip((x + 1) / 2, 0, 1), 6), 0.8 * 2, places=6)
+        self.assertAlmostEqual(measure.edge_width(x, np.clip((x + 1.03) / 2.06, 0, 1), 6), 0.8 * 2.06, places=6)
 
     def test_width_of_exponentials_in_noise(self):
         random = np.random.default_rng(1)
@@ -126,10 +126,11 @@ class Places(unittest.TestCase):
             self.assertAlmostEqual(there[0], 0, places=6)
 
     def test_sectors_go_clockwise_from_the_bottom(self):
-        angle = np.degrees(np.arctan2(-np.array([0.0, -1, 0]), np.array([1.0, -0.5, -1])))  # bottom, left, top
+        # Places at the bottom, at the left and upward, and at the top right of the picture.
+        angle = figure_sectors.clockwise(np.array([0.0, -1, 0.87]), np.array([1.0, -0.5, -0.5]))
         self.assertTrue(figure_sectors.sector(angle[:1], 0)[0])
         self.assertTrue(figure_sectors.sector(angle[1:2], 2)[0])
-        self.assertTrue(figure_sectors.sector(angle[2:], 3)[0])
+        self.assertTrue(figure_sectors.sector(angle[2:], 4)[0])
 
     def test_quantum_dots_are_told_apart(self):
         colours = np.array([[2 * figure_tiles.emission_rgb("545") + 3 * figure_tiles.emission_rgb("655")]])
