@@ -1,6 +1,6 @@
 """Figure 1: six prisms with a sphere, a dragon and a bunny; another view; the light moved."""
 
-from figures_lib import figure, measure, page, scenes
+from figures_lib import page, scenes
 from figures_lib.figure import MODELS, base, exposure_of, job
 
 KEYS = ("fig1",)
@@ -39,7 +39,6 @@ def report(run):
             "share_of_luminance": {name: value / sum(light.values()) for name, value in light.items()},
             "exposure_ev": run.results[f"fig1a_{model}"].exposure_ev,
         }
-        numbers[model]["rmse_view_b_against_a"] = measure.rmse(run.results[f"fig1b_{model}"].picture().rgb, whole.rgb)
     share = {model: numbers[model]["share_of_luminance"]["fluorescence"] for model in MODELS}
     return [
         page.Section(
