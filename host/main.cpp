@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
     stokes::add_render_command(app);
     stokes::add_tables_command(app);
     stokes::add_probe_command(app);
+    stokes::add_compare_command(app);
     stokes::add_devices_command(app);
     try {
         check_subcommand(app, argc, argv);

@@ -5,6 +5,7 @@
 #include "lib/light_sum.clh"
 #include "lib/retrace.clh"
 #include "lib/rng.clh"
+#include "lib/surface_normal.clh"
 #include "shared/material.h"
 #include "shared/pass.h"
 #include "shared/path.h"
@@ -51,7 +52,7 @@ FORCE_INLINE uint choose_event(__global const MaterialRecord* material, __global
 // Reads: list [round.count], hits, flux [W/nm, paths], triangles, shapes, materials, spectra (excitation, sigma_t).
 // Writes: points [paths], kinds [round.count]: STOKES_EVENT_*, ledgers (paths that end here), rays (specular
 //   reflection; a mirrored path goes on with the flux it has).
-// Light that meets the back of a surface is absorbed.
+// Light that meets the back of a surface is absorbed, unless it is two-sided.
 __kernel void classify_photons(EventRound round, __global const PassConstants* pass, __global const uint* list,
                                __global Ray* rays, __global const Hit* hits, __global const float16* flux,
                                __global const Triangle* triangles, __global const MaterialRecord* materials,
@@ -75,14 +76,13 @@ __kernel void classify_photons(EventRound round, __global const PassConstants* p
         return;
     }
     __global const Triangle* tri = &triangles[hit.triangle];
-    const float3 normal = normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z),
-                                          (float3)(tri->e2x, tri->e2y, tri->e2z)));
+    const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
+    const float3 normal = seen_normal(*tri, direction);
     const float3 position = hit_position(rays[path], hit, tri);
     const uint material = shapes[tri->shape].material;
     points[path] = (SurfacePoint){position.x, position.y, position.z, material,
                                   normal.x,   normal.y,   normal.z,   tri->body};
 
-    const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
     const float cos_in = min(-dot(direction, normal), 1.0f);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
     const uint kind = cos_in > 0.0f ? choose_event(&materials[material], spectra, pass->transport, cos_in, draw)

@@ -1,12 +1,14 @@
 // Stage 4 of a pass, below translucent surfaces: exits are sampled, put onto the real surface, stored in the maps
 // F, S and M, and the paths go on. Kugita et al., section 3.3 and PHYSICS section 3, model `paper`; PHYSICS section 4,
 // model `conserving`.
+#include "lib/exit_points.clh"
 #include "lib/first_collision.clh"
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/light_sum.clh"
 #include "lib/normal.clh"
 #include "lib/power_table.clh"
+#include "lib/reradiation.clh"
 #include "lib/retrace.clh"
 #include "shared/material.h"
 #include "shared/photon.h"
@@ -14,37 +16,18 @@
 // Optical lengths beyond this let nothing through: exp(-40) = 4e-18.
 #define OPAQUE_DEPTH 40.0f
 
-// Refraction angle [deg] of light that arrives at incidence cosine cos_in, by Snell's law.
-FORCE_INLINE float refraction_angle_deg(float cos_in, float eta) {
-    const float sin_in = sqrt(max(0.0f, 1.0f - cos_in * cos_in));
-    return asin(min(sin_in / eta, 1.0f)) * 57.2957795f;
-}
-
 // What was to leave where there is no surface.
 FORCE_INLINE float2 missed_light(const ExitPoint* exit_point) {
     return exit_point->r_mm < 0.0f ? light_in(exit_point->kept) : (float2)(0.0f);
 }
 
-// A point of a surface's tangent plane, and what is known of the way there.
-typedef struct PlanePoint {
-    float3 at;
-    float r_mm, row, way_mm, scale;  // as in ExitPoint
-} PlanePoint;
-
 // Model `paper`: at distance r from the entry, r drawn from the component's table, azimuth uniform (STEP 2 and 3).
 FORCE_INLINE PlanePoint paper_exit(float3 entry, float3 normal, float3 direction, float eta, TableShape shape,
                                    __global const float* mean_rows, __global const float* cumulative_rows,
                                    Random4 draw) {
-    PlanePoint p;
-    p.row = refraction_angle_deg(-dot(direction, normal), eta);
-    p.r_mm = sample_distance(mean_rows, cumulative_rows, shape, p.row, draw.a);
-    p.way_mm = 0.0f;
-    p.scale = 1.0f;
-    float3 s, t;
-    tangent_frame(normal, &s, &t);
-    const float2 at = p.r_mm * unit_circle(draw.b);
-    p.at = entry + at.x * s + at.y * t;
-    return p;
+    const float row = refraction_angle_deg(-dot(direction, normal), eta);
+    const float r_mm = sample_distance(mean_rows, cumulative_rows, shape, row, draw.a);
+    return about_entry(entry, normal, r_mm, row, draw.b);
 }
 
 // Model `conserving`: about the foot of the first collision, which lies way_mm along the refracted ray. Direct: where a
@@ -116,12 +99,7 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
         }
         reach = length(p.at - entry) + 8.0f * pass->offset_mm;
     }
-    const LightSum none = {0.0f, 0.0f};
-    exits[round.first_exit + i] = (ExitPoint){entry.x,  entry.y, entry.z, p.r_mm,         normal.x, normal.y,
-                                              normal.z, p.row,   path,    point.material, p.way_mm, p.scale,
-                                              none,     none};
-    probes[round.first_exit + i] =
-        (Probe){p.at.x, p.at.y, p.at.z, reach, normal.x, normal.y, normal.z, reach < 0.0f ? STOKES_NONE : point.body};
+    store_exit(p, reach, path, &point, &exits[round.first_exit + i], &probes[round.first_exit + i]);
 }
 
 // Work-items: count exits. Reads: probes, hits of trace_probe, triangles.
@@ -154,13 +132,14 @@ typedef struct Collision {
 } Collision;
 
 // Model `conserving`, and surface fluorescence. flux arrives; each wavelength is weighted for the way and for the branch
-// that were drawn (lib/first_collision.clh). The re-radiation rows include the excitation E.
+// that were drawn (lib/first_collision.clh). The re-radiation rows include the excitation E. leader: of reemit().
 FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global const float16* spectra,
-                               bool fluorescent, float way_mm, float16 flux) {
+                               __global const PassConstants* pass, bool fluorescent, float way_mm, float16 flux,
+                               LightHistory light, __private uint* leader) {
     Collision result;
     if (material->medium == STOKES_NONE) {
         result.taken_up = flux * spectra[material->excitation_row];
-        result.sent_on = reradiate(&spectra[material->reradiation_row], flux);
+        result.sent_on = reemit(&spectra[material->reradiation_row], flux, pass, light, leader);
         return result;
     }
     const float16 weighted = flux * collision_weights(spectra[material->sigma_row], way_mm);
@@ -170,7 +149,8 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
         const float share = p > 0.0f ? 1.0f / p : 0.0f;
         result.taken_up = weighted * uptake * share;
         result.sent_on =
-            reradiate(&spectra[material->reradiation_row], weighted * (material->fluorescent_fraction * share));
+            reemit(&spectra[material->reradiation_row], weighted * (material->fluorescent_fraction * share), pass,
+                   light, leader);
     } else {
         result.taken_up = weighted * (1.0f - uptake) * (p < 1.0f ? 1.0f / (1.0f - p) : 0.0f);
         result.sent_on = result.taken_up * spectra[material->sigma_row + 1u];
@@ -180,9 +160,10 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
 
 // Work-items: round.count exits of round.component, from round.first_exit on.
 // Reads: materials, spectra (re-radiation, excitation, sigma_t, albedo), table_shapes and table16: the tables at the
-//   pass's wavelengths, flux of the arriving photons [W/nm].
+//   pass's wavelengths, or with STOKES_SAMPLER_INTEGRATED what integrate_power wrote for each exit; flux of the
+//   arriving photons [W/nm].
 // Writes: the map's slot round.first_slot + i: flux that leaves there (`paper`: eq. 3, 4 or 5), ExitPoint.kept and
-//   .event_light, ledgers (stored, dropped deposits).
+//   .event_light, ledgers (stored, dropped deposits, the leader of re-emitted light).
 __kernel void deposit_exits(EventRound round, __global const PassConstants* pass,
                             __global const MaterialRecord* materials, __global const float16* spectra,
                             __global const TableShape* table_shapes, __global const float16* table16,
@@ -195,27 +176,33 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
     __global PathLedger* ledger = &ledgers[exit_point->path];
     const bool found = exit_point->r_mm >= 0.0f;
     const bool fluorescent = round.component == STOKES_MAP_FLUORESCENCE;
-    const float chain = pass->chain[min(ledger->conversions, (uint)STOKES_WAVELENGTHS - 1u)];
+    LightHistory light = {ledger->conversions, ledger->history, 0.0f};
+    if (fluorescent && pass->stratified != 0u)  // the same for both exits of an event
+        light.u = random4(pass->seed, pass->pass, exit_point->path, round.event, RNG_REEMIT).a;
+    uint leader = STOKES_NONE;
 
     float16 leaving = flux[exit_point->path];
     float2 event_light = (float2)(0.0f);
-    if (round.sampler == STOKES_SAMPLER_PAPER) {
+    if (round.sampler == STOKES_SAMPLER_PAPER || round.sampler == STOKES_SAMPLER_INTEGRATED) {
         if (fluorescent) {
-            leaving = reradiate(&spectra[material->reradiation_row], leaving) * chain;
+            leaving = reemit(&spectra[material->reradiation_row], leaving, pass, light, &leader);
             event_light = light_of(leaving, pass);
         }
     } else {
-        Collision collision = collide(material, spectra, fluorescent, exit_point->way_mm, leaving);
-        if (fluorescent) collision.sent_on *= chain;
+        const Collision collision =
+            collide(material, spectra, pass, fluorescent, exit_point->way_mm, leaving, light, &leader);
         event_light = light_of(
             round.sampler == STOKES_SAMPLER_DIRECT ? collision.sent_on : collision.taken_up, pass);
         leaving = collision.sent_on * exit_point->scale;
     }
     if (material->medium != STOKES_NONE && round.sampler == STOKES_SAMPLER_DIRECT)
         leaving *= exp(-spectra[material->sigma_row] * exit_point->row);
+    else if (material->medium != STOKES_NONE && round.sampler == STOKES_SAMPLER_INTEGRATED)
+        leaving *= table16[round.first_exit + i];
     else if (material->medium != STOKES_NONE)
         leaving *= power_table_at(table16, table_shapes[material->medium * 3u + round.component],
                                   fabs(exit_point->r_mm), exit_point->row);
+    if (fluorescent) ledger->leader = leader;
     const float2 kept = light_of(leaving, pass);
     exit_point->kept = (LightSum){kept.x, kept.y};
     exit_point->event_light = (LightSum){event_light.x, event_light.y};
@@ -279,6 +266,7 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - going_on);
     ledger->conversions += 1u;
+    ledger->history = with_leader(ledger->history, ledger->leader);
     flux[path] = carried;
     go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(exit_point.x, exit_point.y, exit_point.z),
           (float3)(exit_point.nx, exit_point.ny, exit_point.nz), going_on, draw.b, draw.c);
@@ -381,7 +369,10 @@ __kernel void retrace_exits(EventRound round, __global const PassConstants* pass
     const float16 carried = (first ? first_flux[slot] : second_flux[slot]) * raised;
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - missed - going_on);
-    if (fluorescent) ledger->conversions += 1u;
+    if (fluorescent) {
+        ledger->conversions += 1u;
+        ledger->history = with_leader(ledger->history, ledger->leader);
+    }
     flux[path] = carried;
     go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
           (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);

@@ -72,6 +72,6 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
     const LightSum none = {0.0f, 0.0f};
     ledgers[path] = (PathLedger){{total.x, total.y}, none, none, none, none, none, none, none,
                                  dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total.x / 16.0f,
-                                 0u, 0u, {0u, 0u}};
+                                 0u, 0u, 0u, STOKES_NONE};
     list[path] = path;
 }

@@ -1,8 +1,10 @@
 // What the camera rays see: light that surfaces emit, and the density estimate over the photon maps.
-// Surfaces have a front only, the side of their outward normal; their back is black.
+// Surfaces have a front only, the side of their outward normal; their back is black, unless they are two-sided.
 #include "lib/fresnel.clh"
 #include "lib/gather.clh"
 #include "lib/inline.clh"
+#include "lib/surface_normal.clh"
+#include "lib/texture.clh"
 #include "lib/tiles.clh"
 #include "shared/camera.h"
 #include "shared/material.h"
@@ -37,14 +39,15 @@ FORCE_INLINE uint maps_of(MaterialRecord material) {
 // A material with Fresnel reflection is seen with the probability 1 - R of trace_seen: the light from below it
 // leaves as (1 - R) exit_scale, PHYSICS section 4, so that its weight is exit_scale; light that the surface itself
 // emits is the same in all directions, and is divided by 1 - R.
-// Reads rays, hits [width * height], triangles, shapes, materials of the scene, emitted[lights]
+// Reads rays, hits [width * height], triangles, shapes, materials, textures of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
 // Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
 __kernel void collect_points(CameraRecord camera, __global const PassConstants* pass,
                              __global const Ray* rays, __global const Hit* hits,
                              __global const Triangle* triangles, __global const ShapeRecord* shapes,
                              __global const MaterialRecord* materials, __global const float16* emitted,
-                             __global GatherPoint* points, __global float4* film) {
+                             __global const TextureRecord* texture_records, __global const float* texels,
+                             __global const TriangleUv* uv, __global GatherPoint* points, __global float4* film) {
     const uint i = (uint)get_global_id(0);
     const uint pixels = camera.width * camera.height;
     if (i >= pixels) return;
@@ -59,8 +62,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
     if (hit.triangle != STOKES_NONE) {
         const Triangle t = triangles[hit.triangle];
         const ShapeRecord shape = shapes[t.shape];
-        const float3 normal =
-            normalize(cross((float3)(t.e1x, t.e1y, t.e1z), (float3)(t.e2x, t.e2y, t.e2z)));
+        const float3 normal = seen_normal(t, (float3)(rays[i].dx, rays[i].dy, rays[i].dz));
         point.x = t.v0x + hit.u * t.e1x + hit.v * t.e2x;
         point.y = t.v0y + hit.u * t.e1y + hit.v * t.e2y;
         point.z = t.v0z + hit.u * t.e1z + hit.v * t.e2z;
@@ -68,6 +70,8 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
         point.ny = normal.y;
         point.nz = normal.z;
         point.material = shape.material;
+        const Textures textures = {texture_records, texels, uv};
+        point.luminance = texture_luminance(textures, shape.material, hit);
         const float cos_in = -(normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz);
         if (cos_in > 0.0f) {
             const MaterialRecord material = materials[shape.material];
@@ -88,18 +92,20 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
 // Work-items: one per point; launched once per map. L = 1/(pi r^2) * sum over the map's photons of flux / pi
 // (eq. 6 of Kugita et al.), times the point's weight, for the surface map times the reflectance.
 // Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
-// material i), pass (to_x, to_y, to_z). Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
+// material i, without its texture), textures, pass (to_x, to_y, to_z).
+// Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
 __kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, HashGrid grid,
                               __global const uint* cell_starts, __global const float* positions,
                               __global const uint* normals, __global const float16* flux,
-                              __global const float16* spectra, __global const PassConstants* pass,
-                              __global float4* film) {
+                              __global const float16* spectra, __global const TextureRecord* texture_records,
+                              __global const PassConstants* pass, __global float4* film) {
     const uint i = (uint)get_global_id(0);
     if (i >= count || (points[i].maps & (1u << map)) == 0u) return;
     const GatherPoint point = points[i];
     const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux,
                                  (float3)(point.x, point.y, point.z), (float3)(point.nx, point.ny, point.nz));
     float16 radiance = sum * (point.weight * M_1_PI_F * M_1_PI_F / (grid.radius_mm * grid.radius_mm));
-    if (map == STOKES_MAP_SURFACE) radiance *= spectra[point.material];
+    if (map == STOKES_MAP_SURFACE)
+        radiance *= textured_reflectance(texture_records, spectra, point.material, point.luminance);
     film[map * count + point.pixel] += film_value(radiance, pass);
 }

@@ -3,6 +3,7 @@
 #include "lib/inline.clh"
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
+#include "lib/surface_normal.clh"
 #include "shared/gather.h"
 #include "shared/limits.h"
 #include "shared/pass.h"
@@ -16,9 +17,7 @@ FORCE_INLINE bool on_surface(BvhScene scene, __global const Triangle* triangles,
     const BvhFilter all = {BVH_BOTH, 0u, 0};
     const Hit hit = bvh_closest(scene, ray, all);
     if (hit.triangle == STOKES_NONE) return false;
-    const Triangle t = triangles[hit.triangle];
-    const float3 other = normalize(cross((float3)(t.e1x, t.e1y, t.e1z), (float3)(t.e2x, t.e2y, t.e2z)));
-    return dot(other, normal) > STOKES_GATHER_MIN_COSINE;
+    return dot(seen_normal(triangles[hit.triangle], -normal), normal) > STOKES_GATHER_MIN_COSINE;
 }
 
 // Work-items: count, one a point. Reads: points, the scene, pass (seed, pass).

@@ -1,17 +1,20 @@
 // Stage 4 of a pass, at diffuse surfaces: photons are stored with the flux they bring, and reflected.
 #include "lib/normal.clh"
 #include "lib/retrace.clh"
+#include "lib/texture.clh"
 #include "shared/photon.h"
 
 // Work-items: round.count, one an entry of list.
-// Reads: list, points [paths], spectra: row i is the reflectance of material i.
+// Reads: list, points and hits [paths], spectra: row i is the reflectance of material i, without its texture; textures.
 // Writes: the surface map's slot round.first_slot + i (incident flux [W/nm]; nothing
 //   from round.slot_limit on), rays, flux, ledgers.
 // The path goes on with probability mean(reflectance flux) / mean(flux) and its flux raised accordingly.
 __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pass, __global const uint* list,
-                              __global const SurfacePoint* points, __global const float16* spectra,
-                              __global Ray* rays, __global float16* flux, __global PathLedger* ledgers,
-                              __global PhotonHead* heads, __global float16* map_flux) {
+                              __global const SurfacePoint* points, __global const Hit* hits,
+                              __global const float16* spectra, __global const TextureRecord* texture_records,
+                              __global const float* texels, __global const TriangleUv* uv, __global Ray* rays,
+                              __global float16* flux, __global PathLedger* ledgers, __global PhotonHead* heads,
+                              __global float16* map_flux) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint path = list[i];
@@ -28,7 +31,9 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
         add_light(&ledger->stored, arriving);
     }
 
-    const float16 reflected = incident * spectra[point.material];
+    const Textures textures = {texture_records, texels, uv};
+    const float luminance = texture_luminance(textures, point.material, hits[path]);
+    const float16 reflected = incident * textured_reflectance(texture_records, spectra, point.material, luminance);
     const float2 leaving = light_of(reflected, pass);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_SCATTER);
     const float survival = arriving.x > 0.0f ? min(leaving.x / arriving.x, 1.0f) : 0.0f;

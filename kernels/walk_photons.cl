@@ -48,7 +48,8 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
     tangent_frame(body.normal, &body.tangent_s, &body.tangent_t);
 
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_RETRACE);
-    Walker walker = enter(&body, (float3)(rays[path].dx, rays[path].dy, rays[path].dz), flux[path], draw.d);
+    Walker walker = enter(&body, (float3)(rays[path].dx, rays[path].dy, rays[path].dz), flux[path],
+                          ledger->history, draw.d);
     uint fate = incident.x > 0.0f ? walk(&walker, &body, path, round.event * WALK_STEPS, ledger->conversions,
                                          ROULETTE_SHARE * incident.x)
                                   : STOKES_FATE_ABSORBED;
@@ -103,6 +104,7 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - going_on);
     ledger->conversions += walker.conversions;
+    ledger->history = walker.history;
     flux[path] = carried;
     go_on(&rays[path], ledger, &round, pass->offset_mm, position, normal, going_on, draw.b, draw.c);
 }

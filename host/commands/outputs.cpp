@@ -25,11 +25,17 @@ bool same_file(const std::string& a, const std::string& b) {
 
 }  // namespace
 
+void check_keeps(const std::vector<std::string>& outputs, const std::string& input, const std::string& what) {
+    if (input.empty()) return;
+    for (const std::string& file : outputs)
+        if (!file.empty() && same_file(file, input)) throw InputError(file + ": this output would replace " + what);
+}
+
 void check_outputs(const std::vector<std::string>& outputs, const std::string& scene) {
+    check_keeps(outputs, scene, "the scene");
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const std::string& file = outputs[i];
         if (file.empty()) continue;
-        if (!scene.empty() && same_file(file, scene)) throw InputError(file + ": this output would replace the scene");
         for (std::size_t j = 0; j < i; ++j)
             if (!outputs[j].empty() && same_file(file, outputs[j]))
                 throw InputError(file + ": expected another file for each output");

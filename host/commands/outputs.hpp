@@ -12,6 +12,9 @@ namespace stokes {
 // are empty stand for no output, and for no scene.
 void check_outputs(const std::vector<std::string>& outputs, const std::string& scene);
 
+// InputError when a file of outputs is the input, which `what` names ("the scene"). Empty names as above.
+void check_keeps(const std::vector<std::string>& outputs, const std::string& input, const std::string& what);
+
 struct Output {
     std::string file;  // empty: none
     std::function<void()> write;

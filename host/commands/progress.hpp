@@ -36,6 +36,13 @@ class Progress {
     void update(std::uint32_t passes_done, std::uint64_t photons);
     void finish();  // ends the line
     double elapsed_s() const;
+    // What takes this time is no part of the passes: elapsed_s() leaves it out.
+    template <class Work>
+    void pause(const Work& work) {
+        const auto begin = Clock::now();
+        work();
+        start_ += Clock::now() - begin;
+    }
 
   private:
     using Clock = std::chrono::steady_clock;

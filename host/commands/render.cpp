@@ -1,11 +1,13 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <memory>
 
 #include "host/commands/commands.hpp"
 #include "host/commands/device_flags.hpp"
+#include "host/commands/error_curve.hpp"
 #include "host/commands/number_in.hpp"
 #include "host/commands/outputs.hpp"
 #include "host/commands/progress.hpp"
@@ -33,12 +35,13 @@ extern "C" void catch_signal(int signal) {
 
 struct RenderOptions {
     std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
-    int passes = 0;
+    std::string reference_file, csv_file, sampling, wavelengths;
+    int passes = 0, every = 0;
     DeviceFlags device;
     std::int64_t photons = 0;
     std::uint32_t seed = 0;
     double alpha = 0.0, radius_mm = 0.0, exposure_ev = 0.0, max_memory_gib = 0.0;
-    bool quiet = false;
+    bool quiet = false, no_tables = false;
 };
 
 // What was given on the command line takes the place of what the scene says.
@@ -51,6 +54,16 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--radius")) render.radius_mm = options.radius_mm;
     if (command.count("--transport"))
         render.transport = static_cast<Transport>(index_of_word(options.transport, transport_words));
+    if (options.no_tables && render.transport != Transport::paper)
+        throw InputError("--no-tables: expected transport \"paper\", got \"" +
+                         transport_words[static_cast<std::size_t>(render.transport)] + "\"");
+    if (options.no_tables) render.tables = false;
+    if (command.count("--sampling")) {
+        render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
+        render.wavelengths.reset();
+    }
+    if (command.count("--wavelengths"))
+        render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -64,11 +77,17 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     }
 }
 
+// Left, top, width, height.
+std::string crop_text(const Crop& crop) {
+    return fmt::format("{} {} {} {}", crop.left, crop.top, crop.width, crop.height);
+}
+
 Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double exposure_ev) {
     return {{"stokes.version", std::string(STOKES_VERSION)},
             {"stokes.scene", stats.scene},
             {"stokes.device", stats.device},
             {"stokes.transport", stats.transport},
+            {"stokes.wavelengths", stats.wavelengths},
             {"stokes.passes", static_cast<int>(stats.passes)},
             {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
             {"stokes.seed", static_cast<double>(stats.seed)},
@@ -78,6 +97,7 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.lambdaMin_nm", scene.render.lambda_min_nm},
             {"stokes.lambdaMax_nm", scene.render.lambda_max_nm},
             {"stokes.exposure_ev", exposure_ev},
+            {"stokes.crop", crop_text(scene.camera.crop)},
             {"stokes.wall_s", stats.wall_s}};
 }
 
@@ -88,6 +108,8 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.driver = device.description().platform + " " + device.description().driver;
     stats.ray_kernel = ray_shape_words[static_cast<std::size_t>(device.ray_shape())];
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
+    stats.tables = scene.render.transport != Transport::walk && scene.render.tables;
+    stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -115,7 +137,7 @@ void say_what_was_dropped(const RenderStats& stats) {
 }
 
 void write_results(const RenderOptions& options, const Scene& scene, const FilmImage& film,
-                   const RenderStats& stats) {
+                   const RenderStats& stats, const ErrorCurve* curve) {
     if (const std::size_t bad = count_non_finite(film))
         warn(fmt::format("{} pixels are not finite and are shown black", bad));
     const double exposure = scene.film.exposure_ev ? *scene.film.exposure_ev : automatic_exposure_ev(film);
@@ -128,7 +150,8 @@ void write_results(const RenderOptions& options, const Scene& scene, const FilmI
     const auto write_figures = [&] { write_stats(stats, options.stats_file); };
     write_outputs({{options.exr_file, write_picture},
                    {options.png_file, write_developed},
-                   {options.stats_file, write_figures}},
+                   {options.stats_file, write_figures},
+                   {options.csv_file, [&] { curve->write(); }}},
                   options.quiet);
 }
 
@@ -153,23 +176,38 @@ std::unique_ptr<Renderer> set_up(Device& device, const Scene& scene) {
     }
 }
 
-void render_passes(Renderer& renderer, const Device& device, int passes, Progress& progress) {
+void render_passes(Renderer& renderer, const Device& device, int passes, Progress& progress, ErrorCurve* curve) {
+    const auto measure = [&] {
+        const double elapsed_s = progress.elapsed_s();
+        progress.pause([&] { curve->add(renderer.passes(), elapsed_s, renderer.image()); });
+    };
     for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(passes) && caught_signal == 0; ++pass) {
         renderer.render_pass(pass);
         device.finish();
         progress.update(pass + 1, renderer.book().photons());
+        if (curve && curve->due(pass + 1)) measure();
     }
+    if (curve && curve->last() != renderer.passes()) measure();
     progress.finish();
+}
+
+// None where none was asked for.
+std::unique_ptr<ErrorCurve> make_curve(const RenderOptions& options, const Film& film) {
+    if (options.csv_file.empty()) return nullptr;
+    return std::make_unique<ErrorCurve>(options.reference_file, options.csv_file, options.every, film);
 }
 
 void render(const CLI::App& command, const RenderOptions& options) {
     const auto start = std::chrono::steady_clock::now();
-    if (options.exr_file.empty() && options.png_file.empty() && options.stats_file.empty())
+    const std::vector<std::string> outputs = {options.exr_file, options.png_file, options.stats_file, options.csv_file};
+    if (std::all_of(outputs.begin(), outputs.end(), [](const std::string& file) { return file.empty(); }))
         throw InputError("render: expected an output, -o OUT.exr, --png OUT.png or --stats FILE.json");
-    check_outputs({options.exr_file, options.png_file, options.stats_file}, options.scene_file);
+    check_outputs(outputs, options.scene_file);
+    check_keeps(outputs, options.reference_file, "the reference");
     Scene scene = read_scene(options.scene_file);
     apply(command, options, scene);
     if (scene.render.transport == Transport::walk) check_walkable(scene);  // before the device is opened
+    const std::unique_ptr<ErrorCurve> curve = make_curve(options, scene.film);
     warn_about_models(scene);
     warn_about_assumptions(scene);
     std::signal(SIGINT, catch_signal);
@@ -180,7 +218,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     const std::unique_ptr<Renderer> renderer = set_up(device, scene);
     const double set_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress.start();
-    if (renderer) render_passes(*renderer, device, scene.render.passes, progress);
+    if (renderer) render_passes(*renderer, device, scene.render.passes, progress, curve.get());
     const double wall_s = progress.elapsed_s();
     if (!renderer || renderer->passes() == 0) {
         progress.finish();
@@ -193,7 +231,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     stats.set_up_s = set_up_s;
     if (!options.quiet) say_what_was_dropped(stats);
     warn_about(stats.ledger);
-    write_results(options, scene, film, stats);
+    write_results(options, scene, film, stats, curve.get());
 }
 
 }  // namespace
@@ -210,6 +248,18 @@ void add_render_command(CLI::App& app) {
         ->type_name("OUT.exr");
     command->add_option("--png", options->png_file, "Picture for the screen")->type_name("OUT.png");
     command->add_option("--stats", options->stats_file, "Figures of the render")->type_name("FILE.json");
+    CLI::Option* reference =
+        command->add_option("--rmse-against", options->reference_file, "Measure the error against this picture")
+            ->type_name("REF.exr");
+    CLI::Option* csv =
+        command->add_option("--csv", options->csv_file, "Error after 1, 2, 4 .. passes, written while it renders")
+            ->type_name("FILE.csv")
+            ->needs(reference);
+    reference->needs(csv);
+    command->add_option("--every", options->every, "Error after every N passes instead")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100000000))
+        ->needs(reference);
     command->add_option("--passes", options->passes, "Passes")->check(CLI::Range(1, 100000000));
     command->add_option("--photons", options->photons, "Photons per pass")
         ->check(number_in(1, static_cast<double>(most_photons_per_pass)));
@@ -217,6 +267,16 @@ void add_render_command(CLI::App& app) {
     command->add_option("--transport", options->transport, "How light travels below translucent surfaces")
         ->type_name("MODEL")
         ->check(word_of(transport_words));
+    command->add_flag("--no-tables", options->no_tables,
+                      "Model paper: every photon integrates its power itself, in place of the tables");
+    command->add_option("--sampling", options->sampling, "Plain samplers, or those with the least noise; default: best")
+        ->type_name("KIND")
+        ->check(word_of(sampling_words));
+    command
+        ->add_option("--wavelengths", options->wavelengths,
+                     "How a pass draws its wavelengths; default: importance, for transport paper uniform")
+        ->type_name("HOW")
+        ->check(word_of(wavelengths_words));
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

@@ -45,14 +45,6 @@ std::string reason_of(const std::exception& error) {
     return text.substr(start, text.find('\n', start) - start);
 }
 
-std::map<std::string, std::vector<float>> layers_of(const FilmImage& film) {
-    std::map<std::string, std::vector<float>> layers;
-    layers[""] = total_rgb(film);
-    for (std::size_t k = 0; k < component_count; ++k)
-        layers[component_names[k]] = component_rgb(film, static_cast<Component>(k));
-    return layers;
-}
-
 void add_metadata(Imf::Header& header, const Metadata& metadata) {
     for (const auto& [name, value] : metadata) {
         if (const auto* text = std::get_if<std::string>(&value))
@@ -69,7 +61,7 @@ std::string encode(const std::string& path, const FilmImage& film, const Metadat
     Imf::addWhiteLuminance(header, 1.0f);
     add_metadata(header, metadata);
 
-    std::map<std::string, std::vector<float>> layers = layers_of(film);
+    RgbLayers layers = film_layers(film);
     Imf::FrameBuffer frame;
     for (auto& [layer, rgb] : layers) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -115,8 +107,8 @@ Metadata attributes_of(const Imf::Header& header) {
 }
 
 // The layers that have at least one of R, G, B at full resolution, still without pixels.
-std::map<std::string, std::vector<float>> find_layers(const Imf::Header& header) {
-    std::map<std::string, std::vector<float>> layers;
+RgbLayers find_layers(const Imf::Header& header) {
+    RgbLayers layers;
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
         const std::string name = it.name();
         const std::size_t dot = name.rfind('.');

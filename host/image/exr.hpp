@@ -4,7 +4,6 @@
 #include <map>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "host/image/film.hpp"
 
@@ -22,9 +21,7 @@ void write_exr(const std::string& path, const FilmImage& film, const Metadata& m
 struct ExrImage {
     int width = 0;
     int height = 0;
-    // By layer name, "" for R, G, B: width * height * 3 floats, top row first. A channel the file has not is
-    // 0.
-    std::map<std::string, std::vector<float>> layers;
+    RgbLayers layers;     // a channel the file has not is 0
     Metadata attributes;  // those of type string, int, float or double
 };
 

@@ -38,6 +38,14 @@ std::vector<float> total_rgb(const FilmImage& film) {
     return total;
 }
 
+RgbLayers film_layers(const FilmImage& film) {
+    RgbLayers layers;
+    layers[""] = total_rgb(film);
+    for (std::size_t k = 0; k < component_count; ++k)
+        layers[component_names[k]] = component_rgb(film, static_cast<Component>(k));
+    return layers;
+}
+
 std::size_t count_non_finite(const FilmImage& film) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < film.pixels() * 3; i += 3) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ std::vector<float> component_rgb(const FilmImage& film, Component component);
 // The sum of the components, each taken as component_rgb gives it, so that a file's layers add up to its
 // picture.
 std::vector<float> total_rgb(const FilmImage& film);
+
+// Layers by name, "" for the whole picture: width * height * 3 values R, G, B each, laid out as xyz is.
+using RgbLayers = std::map<std::string, std::vector<float>>;
+
+// What a file holds of a film: total_rgb as "", and component_rgb by the names of component_names.
+RgbLayers film_layers(const FilmImage& film);
 
 // Pixels with a NaN or an infinity in any component: a caller may want to warn.
 std::size_t count_non_finite(const FilmImage& film);

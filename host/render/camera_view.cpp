@@ -4,7 +4,10 @@
 
 namespace stokes {
 
-CameraRecord make_camera_record(const Camera& camera, int width, int height) {
+namespace {
+
+// Of the whole picture whose crop width x height square pixels show, this window in as many pixels.
+CameraRecord make_record(const Camera& camera, const Crop& window, int width, int height) {
     if (width < 1 || height < 1 || static_cast<double>(width) * height > 0x1p31)
         throw InputError("film: expected a picture of 1 to 2^31 pixels");
     if (!(camera.vertical_fov_deg > 0.0 && camera.vertical_fov_deg < 180.0))
@@ -16,10 +19,16 @@ CameraRecord make_camera_record(const Camera& camera, int width, int height) {
     if (!(glm::length(side) > 1e-9 * glm::length(camera.up)))
         throw InputError("camera: expected an up direction that is not along the view");
 
-    const double pixel = 2.0 * std::tan(glm::radians(camera.vertical_fov_deg) / 2.0) / height;
-    const glm::dvec3 right = glm::normalize(side) * pixel;
-    const glm::dvec3 down = glm::normalize(glm::cross(forward, side)) * pixel;
-    const glm::dvec3 corner = forward - right * (width / 2.0) - down * (height / 2.0);
+    if (!(camera.crop.width > 0.0 && camera.crop.height > 0.0))
+        throw InputError("camera: expected a crop of a width and a height above 0");
+
+    // The whole picture at distance 1.
+    const double whole_height = 2.0 * std::tan(glm::radians(camera.vertical_fov_deg) / 2.0);
+    const double whole_width = whole_height * camera.crop.height / height * width / camera.crop.width;
+    const glm::dvec3 across = glm::normalize(side) * whole_width;
+    const glm::dvec3 downward = glm::normalize(glm::cross(forward, side)) * whole_height;
+    const glm::dvec3 corner = forward + across * (window.left - 0.5) + downward * (window.top - 0.5);
+    const glm::dvec3 right = across * (window.width / width), down = downward * (window.height / height);
 
     CameraRecord record{};
     record.width = static_cast<unsigned>(width);
@@ -36,12 +45,22 @@ CameraRecord make_camera_record(const Camera& camera, int width, int height) {
     return record;
 }
 
+}  // namespace
+
+CameraRecord make_camera_record(const Camera& camera, int width, int height) {
+    return make_record(camera, camera.crop, width, height);
+}
+
+CameraRecord make_whole_record(const Camera& camera, int width, int height) {
+    return make_record(camera, Crop{}, width, height);
+}
+
 CameraView::CameraView(const Device& device, const CameraRecord& camera)
     : camera_(camera), camera_rays_(Program(device, "camera_rays.cl").kernel("camera_rays")) {}
 
-void CameraView::make_rays(const Buffer<PassConstants>& pass, const Buffer<Ray>& rays) {
+void CameraView::make_rays(const CameraRecord& camera, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays) {
     if (rays.size() < ray_count()) throw RunError("camera: fewer rays than pixels");
-    camera_rays_.launch(ray_count(), camera_, pass, rays);
+    camera_rays_.launch(ray_count(), camera, pass, rays);
 }
 
 }  // namespace stokes

@@ -9,6 +9,7 @@
 #include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
 #include "host/scene/mesh_topology.hpp"
+#include "host/subsurface/distance_mixture.hpp"
 #include "host/subsurface/distance_sampler.hpp"
 #include "host/subsurface/fresnel.hpp"
 
@@ -63,11 +64,40 @@ std::vector<MaterialRecord> material_records(const Scene& scene) {
     return records;
 }
 
-DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
+// By index of Scene::media: some material has it below its surface.
+std::vector<bool> needed_media(const Scene& scene) {
     std::vector<bool> needed(scene.media.size(), false);
     for (const Material& material : scene.materials)
         if (has_subsurface(material))
             needed[static_cast<std::size_t>(material.medium)] = true;
+    return needed;
+}
+
+MediumSpectra spectra_of(const Medium& medium) {
+    return {medium.name, medium.sigma_s, medium.sigma_a, medium.eta, medium.dipole_eta};
+}
+
+bool integrates(const Scene& scene) {
+    return scene.render.transport == Transport::paper && !scene.render.tables;
+}
+
+IntegratedMedia upload_integrated_media(const Device& device, const Scene& scene) {
+    const std::vector<bool> needed = needed_media(scene);
+    std::vector<DistanceMixture> mixtures(scene.media.size());
+    std::vector<float> rows;
+    for (std::size_t m = 0; m < scene.media.size(); ++m) {
+        if (!needed[m]) continue;
+        const MediumMixture mixture = make_medium_mixture(spectra_of(scene.media[m]), rows.size());
+        mixtures[m] = mixture.record;
+        append(rows, mixture.rows);
+    }
+    return {Buffer<DistanceMixture>(device, "distance mixtures", mixtures),
+            Buffer<float>(device, "distance mixture rows", rows),
+            Buffer<PassMedium>(device, "media of the pass", scene.media.size())};
+}
+
+DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
+    const std::vector<bool> needed = needed_media(scene);
     std::vector<TableShape> shapes;
     std::vector<float> values, mean_rows, cumulative_rows;
     DeviceTables result;
@@ -76,8 +106,7 @@ DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
             shapes.insert(shapes.end(), 3, TableShape{});
             continue;
         }
-        const Medium& medium = scene.media[m];
-        const MediumSpectra spectra{medium.name, medium.sigma_s, medium.sigma_a, medium.eta, medium.dipole_eta};
+        const MediumSpectra spectra = spectra_of(scene.media[m]);
         for (const PowerTable& table :
              {make_fluorescence_table(spectra), make_single_table(spectra), make_multiple_table(spectra)}) {
             const DistanceSampler sampler = make_distance_sampler(table, mean_rows.size());
@@ -136,9 +165,9 @@ DeviceTables reserve_green_tables(const Device& device, const Scene& scene) {
     return result;
 }
 
-// `walk` needs none; the kernels' arguments are there.
+// `walk` needs none, and `paper` need not have any; the kernels' arguments are there.
 DeviceTables make_tables(const Device& device, const Scene& scene) {
-    if (scene.render.transport == Transport::paper) return upload_power_tables(device, scene);
+    if (scene.render.transport == Transport::paper && !integrates(scene)) return upload_power_tables(device, scene);
     if (scene.render.transport == Transport::conserving) return reserve_green_tables(device, scene);
     return reserve_green_tables(device, Scene{});
 }
@@ -205,7 +234,8 @@ std::vector<Triangle> scene_triangles(const Scene& scene) {
             const glm::vec3 a = shape.mesh.positions_mm[t.x];
             const glm::vec3 e1 = shape.mesh.positions_mm[t.y] - a, e2 = shape.mesh.positions_mm[t.z] - a;
             triangles.push_back({a.x, a.y, a.z, static_cast<std::uint32_t>(s), e1.x, e1.y, e1.z,
-                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z, 0});
+                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z,
+                                 shape.two_sided ? 1u : 0u});
         }
     }
     return triangles;
@@ -224,6 +254,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     triangles = Buffer<Triangle>(device, "triangles", all);
     shapes = Buffer<ShapeRecord>(device, "shapes", shape_records);
     materials = Buffer<MaterialRecord>(device, "materials", material_records(scene));
+    textures = upload_textures(device, scene);
 
     light_probability = light_probabilities(scene);
     const LightTables tables_of_lights = light_tables(scene, light_probability, all, first_triangle);
@@ -233,6 +264,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     light_count = static_cast<std::uint32_t>(scene.lights.size());
     transport = scene.render.transport;
     tables = make_tables(device, scene);
+    if (integrates(scene)) integrated = upload_integrated_media(device, scene);
     has_fresnel = std::any_of(scene.materials.begin(), scene.materials.end(),
                               [&](const Material& material) { return reflects(scene, material); });
     bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));

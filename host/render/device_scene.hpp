@@ -3,13 +3,16 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "host/device/device.hpp"
 #include "host/render/ray_casting.hpp"
+#include "host/render/device_textures.hpp"
 #include "host/scene/scene.hpp"
 #include "host/subsurface/device_table.hpp"
 #include "host/subsurface/green_table.hpp"
+#include "kernels/shared/integrated_power.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/power_table.h"
@@ -41,12 +44,21 @@ struct DeviceTables {
     std::size_t green_rows = 0;            // of all of them together
 };
 
+// Model `paper` without power tables: what distances are drawn from, and the media at the pass's wavelengths, both by
+// index of Scene::media. Entries of media that no material needs are all 0.
+struct IntegratedMedia {
+    Buffer<DistanceMixture> mixtures;
+    Buffer<float> mixture_rows;
+    Buffer<PassMedium> at_wavelengths;
+};
+
 struct DeviceScene {
     DeviceScene(const Device& device, const Scene& scene);
 
     Buffer<Triangle> triangles;
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
+    DeviceTextures textures;
     Buffer<std::uint32_t> bodies;  // STOKES_BODY_*, by body; one entry where the transport does not ask
     RayScene rays;
     Buffer<LightRecord> lights;
@@ -54,6 +66,7 @@ struct DeviceScene {
     Transport transport = Transport::paper;
     bool has_fresnel = false;  // some material reflects specularly
     DeviceTables tables;
+    std::optional<IntegratedMedia> integrated;   // in place of tables
     std::vector<double> light_probability;      // per light
     std::vector<double> light_surface_area_mm2;  // per light, 0 for beams
     float offset_mm = 0.0f;                      // rays start this far off a surface

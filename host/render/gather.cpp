@@ -14,7 +14,8 @@ Gather::Gather(const Device& device, const RayKernels& kernels, const CameraReco
 void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass,
                             const Buffer<Ray>& rays, const Buffer<Hit>& hits, const Buffer<FilmValue>& film) {
     collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes,
-                           scene.materials, scene.emitted, points_, film);
+                           scene.materials, scene.emitted, scene.textures.records, scene.textures.texels,
+                           scene.textures.uv, points_, film);
 }
 
 void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm) {
@@ -25,8 +26,8 @@ void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>
 void Gather::add_map(std::uint32_t map, const SpatialHash& photons, const GatherScene& scene,
                      const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film) {
     gather_radiance_.launch(pixels(), points_, pixels(), map, photons.grid(), photons.cell_starts(),
-                            photons.positions(), photons.normals(), photons.flux(), scene.spectra, pass,
-                            film);
+                            photons.positions(), photons.normals(), photons.flux(), scene.spectra,
+                            scene.textures.records, pass, film);
 }
 
 }  // namespace stokes

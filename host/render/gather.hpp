@@ -25,6 +25,7 @@ struct GatherScene {
     Buffer<MaterialRecord> materials;
     Buffer<Flux16> spectra;  // row i: reflectance of material i at the pass's wavelengths
     Buffer<Flux16> emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]
+    DeviceTextures textures;
 };
 
 // Adds a pass to the film [STOKES_MAP_COUNT][height][width].

@@ -1,6 +1,11 @@
 #include "host/render/pass_maker.hpp"
 
 #include <algorithm>
+#include <vector>
+
+#include "host/subsurface/paper_transport.hpp"
+
+#include "host/render/wavelength_importance.hpp"
 
 namespace stokes {
 
@@ -15,13 +20,16 @@ GreenResampler::Sixteen sixteen(const Flux16& row) {
 }  // namespace
 
 PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene& on_device)
-    : scene_(scene), on_device_(on_device), wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
+    : scene_(scene),
+      on_device_(on_device),
+      strata_(stratified_wavelengths(scene)),
+      wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
     buffers_.constants = Buffer<PassConstants>(device, "pass constants", 1);
     buffers_.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count());
     buffers_.photon_flux = Buffer<Flux16>(device, "photon flux of the lights", scene.lights.size());
     buffers_.radiance = Buffer<Flux16>(device, "radiance of the lights", scene.lights.size());
     const DeviceTables& tables = on_device.tables;
-    if (on_device.transport == Transport::paper) resample_ = Program(device, "resample_tables.cl").kernel("resample_table");
+    if (tables.values.size() > 0) resample_ = Program(device, "resample_tables.cl").kernel("resample_table");
     for (const auto& [eta, table] : tables.green_tables) green_[eta] = std::make_unique<GreenResampler>(device, table);
     if (!tables.green.empty())
         green_tables_ = {tables.at_wavelengths, Buffer<Flux16>(device, "probabilities of escape", tables.green_rows),
@@ -29,7 +37,7 @@ PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene
 }
 
 void PassMaker::make(std::uint32_t pass, std::uint32_t photons) {
-    make(pass_wavelengths(scene_.render, pass), pass, photons);
+    make(strata_ ? strata_->draw(scene_.render.seed, pass) : pass_wavelengths(scene_.render, pass), pass, photons);
 }
 
 void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons) {
@@ -41,11 +49,27 @@ void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std
     buffers_.photon_flux.upload(spectra_.photon_flux);
     buffers_.radiance.upload(spectra_.radiance);
     resample_tables();
+    if (on_device_.integrated) sample_media();
+}
+
+// Where there are no power tables.
+void PassMaker::sample_media() {
+    std::vector<PassMedium> media(scene_.media.size(), PassMedium{});
+    for (std::size_t m = 0; m < media.size(); ++m) {
+        const Medium& medium = scene_.media[m];
+        for (std::size_t i = 0; i < STOKES_WAVELENGTHS; ++i) {
+            const auto lambda = static_cast<double>(spectra_.constants.lambda_nm[i]);
+            media[m].sigma_s[i] = static_cast<float>(medium.sigma_s.at(lambda));
+            media[m].sigma_a[i] = static_cast<float>(medium.sigma_a.at(lambda));
+        }
+        media[m].dipole_a = static_cast<float>(dipole_boundary(medium.dipole_eta));
+    }
+    on_device_.integrated->at_wavelengths.upload(media);
 }
 
 void PassMaker::resample_tables() {
     const DeviceTables& tables = on_device_.tables;
-    if (on_device_.transport == Transport::paper) {
+    if (tables.values.size() > 0) {
         const EvenAxis& lambda = tables.wavelengths;
         wavelengths_.upload(spectra_.constants.lambda_nm, STOKES_WAVELENGTHS);
         resample_.launch(tables.entries, tables.values, static_cast<std::uint32_t>(lambda.count),

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "host/device/device.hpp"
 #include "host/render/device_scene.hpp"
 #include "host/render/green_resampler.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/photon_tracer.hpp"
+#include "host/render/stratified_wavelengths.hpp"
 #include "host/scene/scene.hpp"
 
 namespace stokes {
@@ -30,8 +32,10 @@ class PassMaker {
 
   private:
     void resample_tables();
+    void sample_media();
     const Scene& scene_;
     const DeviceScene& on_device_;
+    std::optional<StratifiedWavelengths> strata_;
     PassBuffers buffers_;
     PassSpectra spectra_;
     Kernel resample_;

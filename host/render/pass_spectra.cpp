@@ -1,10 +1,12 @@
 #include "host/render/pass_spectra.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "host/core/error.hpp"
 #include "host/image/colour.hpp"
+#include "host/render/stratified_wavelengths.hpp"
 
 namespace stokes {
 
@@ -13,9 +15,17 @@ namespace {
 // Over which the emission is normalised [nm].
 constexpr int first_emission_nm = 300, last_emission_nm = 830;
 
-Flux16 sampled(const Spectrum& spectrum, const WavelengthSet& set, double factor = 1.0) {
+Flux16 sampled(const Spectrum& spectrum, const WavelengthSet& set) {
     Flux16 result;
-    for (std::size_t i = 0; i < set.size(); ++i) result.v[i] = static_cast<float>(factor * spectrum.at(set[i]));
+    for (std::size_t i = 0; i < set.size(); ++i) result.v[i] = static_cast<float>(spectrum.at(set[i]));
+    return result;
+}
+
+// Of light that starts at the set's wavelengths.
+Flux16 starting(const Spectrum& spectrum, const PassWavelengths& wavelengths, double factor) {
+    Flux16 result;
+    for (std::size_t i = 0; i < wavelengths.set.size(); ++i)
+        result.v[i] = static_cast<float>(factor * wavelengths.rarity[i] * spectrum.at(wavelengths.set[i]));
     return result;
 }
 
@@ -38,7 +48,11 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
         constants.to_y[i] = static_cast<float>(to_film * observer.y.at(set[i]));
         constants.to_z[i] = static_cast<float>(to_film * observer.z.at(set[i]));
         constants.chain[i] = static_cast<float>(wavelengths.chain[i]);
+        constants.strata[i] = wavelengths.strata[i];
     }
+    constants.stratified = wavelengths.stratified ? 1 : 0;
+    for (std::size_t i = 0; i < level_shares.size(); ++i)
+        constants.level_shares[i] = static_cast<float>(level_shares[i]);
     constants.seed = render.seed;
     constants.pass = pass;
     constants.photons = photons;
@@ -52,7 +66,11 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
 SpectraLayout::SpectraLayout(const Scene& scene)
     : materials(static_cast<std::uint32_t>(scene.materials.size())),
       fluorophores(static_cast<std::uint32_t>(scene.fluorophores.size())),
-      media(static_cast<std::uint32_t>(scene.media.size())) {}
+      media(static_cast<std::uint32_t>(scene.media.size())),
+      textures(
+          static_cast<std::uint32_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
+                                                   [](const Material& m) { return m.texture != nullptr; }))) {
+}
 
 // Given k wavelengths of a path in the set, the next is in it with probability (n - k)/(N - k).
 PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass) {
@@ -81,7 +99,16 @@ std::vector<double> light_probabilities(const Scene& scene) {
 }
 
 std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
-                                                        const WavelengthSet& set, double pair_weight) {
+                                                        const WavelengthSet& set, double pair_weight_nm) {
+    PassWavelengths wavelengths{};
+    wavelengths.set = set;
+    wavelengths.pair_weight_nm = pair_weight_nm;
+    return reradiation_rows(fluorophore, transport, wavelengths);
+}
+
+std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
+                                                        const PassWavelengths& wavelengths) {
+    const WavelengthSet& set = wavelengths.set;
     std::array<Flux16, STOKES_WAVELENGTHS> rows{};
     const double sum = fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
     for (std::size_t ex = 0; ex < set.size(); ++ex)
@@ -91,7 +118,8 @@ std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluor
                                        ? fluorophore.conversion * fluorophore.emission.at(set[em])
                                        : fluorophore.quantum_yield * fluorophore.emission.at(set[em]) / sum *
                                              set[ex] / set[em];
-            rows[ex].v[em] = static_cast<float>(emitted * fluorophore.excitation.at(set[ex]) * pair_weight);
+            rows[ex].v[em] =
+                static_cast<float>(emitted * fluorophore.excitation.at(set[ex]) * wavelengths.weight_nm(ex, em));
         }
     return rows;
 }
@@ -111,8 +139,7 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
     for (const Material& material : scene.materials) result.rows.push_back(sampled(material.reflectance, set));
     for (const Fluorophore& fluorophore : scene.fluorophores) {
         result.rows.push_back(sampled(fluorophore.excitation, set));
-        for (const Flux16& row :
-             reradiation_rows(fluorophore, scene.render.transport, set, wavelengths.pair_weight_nm))
+        for (const Flux16& row : reradiation_rows(fluorophore, scene.render.transport, wavelengths))
             result.rows.push_back(row);
     }
     for (const Medium& medium : scene.media) {
@@ -125,12 +152,15 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
         result.rows.push_back(sigma_t);
         result.rows.push_back(albedo);
     }
+    for (const Material& material : scene.materials)
+        if (material.texture) result.rows.push_back(sampled(material.white, set));
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const Light& light = scene.lights[i];
         const double p = probabilities[i];
-        result.photon_flux.push_back(sampled(light.flux, set, p > 0.0 ? 1.0 / (p * photons) : 0.0));
+        result.photon_flux.push_back(starting(light.flux, wavelengths, p > 0.0 ? 1.0 / (p * photons) : 0.0));
         const bool surface = light.kind == LightKind::surface;
-        result.radiance.push_back(sampled(light.flux, set, surface ? 1.0 / (M_PI * surface_area_mm2[i]) : 0.0));
+        result.radiance.push_back(
+            starting(light.flux, wavelengths, surface ? 1.0 / (M_PI * surface_area_mm2[i]) : 0.0));
     }
     return result;
 }

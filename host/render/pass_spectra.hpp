@@ -13,8 +13,8 @@
 namespace stokes {
 
 // Where rows of the pass's spectra stand: a row is one Flux16.
-// [0, materials): reflectance; then one excitation row and 16 re-radiation rows a fluorophore; then sigma_t [1/mm] and
-// albedo of each medium.
+// [0, materials): reflectance; then one excitation row and 16 re-radiation rows a fluorophore; then sigma_t
+// [1/mm] and albedo of each medium; then the white reflectance of each material that has a texture.
 struct SpectraLayout {
     explicit SpectraLayout(const Scene& scene);
     std::uint32_t excitation_row(int fluorophore) const { return materials + static_cast<std::uint32_t>(fluorophore) * 17; }
@@ -22,16 +22,12 @@ struct SpectraLayout {
     std::uint32_t sigma_row(int medium) const {
         return materials + fluorophores * 17 + static_cast<std::uint32_t>(medium) * 2;
     }
-    std::uint32_t row_count() const { return materials + fluorophores * 17 + media * 2; }
-    std::uint32_t materials, fluorophores, media;
-};
-
-// The wavelengths of a pass, and what keeps sums over those that light is re-radiated from unbiased.
-struct PassWavelengths {
-    WavelengthSet set;
-    double pair_weight_nm;  // of a first re-radiation
-    // Factor on it for light that has been re-radiated k times before; [0] is 1.
-    std::array<double, STOKES_WAVELENGTHS> chain;
+    // texture: number of the material among those with a texture.
+    std::uint32_t white_row(std::uint32_t texture) const {
+        return materials + fluorophores * 17 + media * 2 + texture;
+    }
+    std::uint32_t row_count() const { return white_row(textures); }
+    std::uint32_t materials, fluorophores, media, textures;
 };
 
 // Those of a render's pass: drawn uniformly, PHYSICS section 2.
@@ -40,8 +36,9 @@ PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pas
 struct PassSpectra {
     PassConstants constants;           // all but offset_mm
     std::vector<Flux16> rows;          // SpectraLayout::row_count() rows
-    std::vector<Flux16> photon_flux;   // per light: flux of one photon [W/nm], all lights' probabilities included
-    std::vector<Flux16> radiance;      // per light: radiance of its surface [W mm^-2 sr^-1 nm^-1], 0 for beams
+    // Per light, times the wavelengths' rarity: flux of one photon [W/nm], all lights' probabilities included, and
+    // radiance of its surface [W mm^-2 sr^-1 nm^-1], 0 for beams.
+    std::vector<Flux16> photon_flux, radiance;
 };
 
 // Chance that a photon starts at each light: proportional to its power in the render's wavelength range.
@@ -60,6 +57,9 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
 // The others: quantum yield E(ex) f(em) ex/em pair weight, f the emission as photons per nm, its sum over 300..830 nm
 // one (PHYSICS section 4, without c).
 std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
-                                                        const WavelengthSet& set, double pair_weight);
+                                                        const PassWavelengths& wavelengths);
+// The same where all pairs weigh alike.
+std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
+                                                        const WavelengthSet& set, double pair_weight_nm);
 
 }  // namespace stokes

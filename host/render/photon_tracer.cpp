@@ -71,7 +71,7 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
         round.count = count;
         const ListCounts lists = make_lists(scene, pass, round);
         round.count = lists.diffuse;
-        scatter_at_surfaces(pass, round, maps[STOKES_MAP_SURFACE]);
+        scatter_at_surfaces(scene, pass, round, maps[STOKES_MAP_SURFACE]);
         scatter_below_surfaces(scene, pass, round, lists, maps);
         std::swap(alive_, next_alive_);
         count = lists.alive;
@@ -91,13 +91,15 @@ ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers&
     return totals_.download(1).front();
 }
 
-void PhotonTracer::scatter_at_surfaces(const PassBuffers& pass, EventRound round, PhotonMap& map) {
+void PhotonTracer::scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
+                                       PhotonMap& map) {
     if (round.count == 0) return;
     map.reserve(round.count);
     round.first_slot = map.used();
     round.slot_limit = map.capacity();
-    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, pass.rows, rays_, flux_, ledgers_, map.heads(),
-                    map.flux());
+    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows,
+                    scene.textures.records, scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_,
+                    map.heads(), map.flux());
     deposits_ += round.count;
     refused_slots_ += map.advance(round.count);
 }
@@ -111,11 +113,12 @@ struct ExitGroup {
 };
 
 // A list's groups follow each other, those of fluorescence first.
-std::vector<ExitGroup> exit_groups(Transport transport) {
-    if (transport == Transport::paper)
-        return {{STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_PAPER, true},
-                {STOKES_MAP_SINGLE, STOKES_SAMPLER_PAPER, false},
-                {STOKES_MAP_MULTIPLE, STOKES_SAMPLER_PAPER, false}};
+std::vector<ExitGroup> exit_groups(const DeviceScene& scene) {
+    const std::uint32_t paper = scene.integrated ? STOKES_SAMPLER_INTEGRATED : STOKES_SAMPLER_PAPER;
+    if (scene.transport == Transport::paper)
+        return {{STOKES_MAP_FLUORESCENCE, paper, true},
+                {STOKES_MAP_SINGLE, paper, false},
+                {STOKES_MAP_MULTIPLE, paper, false}};
     return {{STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_DIRECT, true},
             {STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_SCATTERED, true},
             {STOKES_MAP_SINGLE, STOKES_SAMPLER_DIRECT, false},
@@ -132,7 +135,7 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
         walk.count = lists.elastic;
         walk_below_surfaces(scene, pass, walk, maps);
     }
-    const std::vector<ExitGroup> groups = exit_groups(scene.transport);
+    const std::vector<ExitGroup> groups = exit_groups(scene);
     std::vector<EventRound> rounds;
     std::uint32_t exits = 0;
     for (const ExitGroup& group : groups) {
@@ -145,10 +148,7 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
         rounds.push_back(r);
     }
     if (exits == 0) return;
-    for (EventRound& r : rounds)
-        sample_exits_.launch(r.count, r, pass.constants, r.component == STOKES_MAP_FLUORESCENCE ? fluorescence_ : elastic_,
-                             points_, rays_, scene.materials, pass.rows, scene.tables.shapes, scene.tables.mean_rows,
-                             scene.tables.cumulative_rows, exits_, probes_);
+    for (const EventRound& r : rounds) sample_exits(scene, pass, r);
     trace_probe_.launch(exits, exits, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles, probes_, probe_hits_);
     place_exits_.launch(exits, exits, probes_, probe_hits_, scene.triangles, exits_);
     if (scene.transport == Transport::conserving)
@@ -160,12 +160,33 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
         r.first_slot = map.used();
         r.slot_limit = map.capacity();
         deposit_.launch(r.count, r, pass.constants, scene.materials, pass.rows, scene.tables.shapes,
-                        scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(), map.flux());
+                        scene.integrated ? powers_ : scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(),
+                        map.flux());
         deposits_ += r.count;
         refused_slots_ += map.advance(r.count);
     }
     probes_traced_ += exits;
     trace_on(scene, pass, rounds, maps);
+}
+
+// One group's exits; without power tables also what leaves there.
+void PhotonTracer::sample_exits(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round) {
+    const Buffer<std::uint32_t>& list = round.component == STOKES_MAP_FLUORESCENCE ? fluorescence_ : elastic_;
+    if (!scene.integrated) {
+        sample_exits_.launch(round.count, round, pass.constants, list, points_, rays_, scene.materials, pass.rows,
+                             scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, exits_,
+                             probes_);
+        return;
+    }
+    if (!draw_exits_) {
+        const Program program(device_, "integrate_power.cl");
+        draw_exits_.emplace(program.kernel("draw_exits"));
+        integrate_.emplace(program.kernel("integrate_power"));
+        powers_ = Buffer<Flux16>(device_, "powers at exits", exits_.size());
+    }
+    draw_exits_->launch(round.count, round, pass.constants, list, points_, rays_, scene.materials,
+                        scene.integrated->mixtures, scene.integrated->mixture_rows, exits_, probes_);
+    integrate_->launch(round.count, round, exits_, scene.materials, scene.integrated->at_wavelengths, powers_);
 }
 
 // Each path that enters a medium leaves it at most once, in one of three maps; it takes a slot in all of them.

@@ -46,9 +46,11 @@ class PhotonTracer {
 
   private:
     ListCounts make_lists(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);
-    void scatter_at_surfaces(const PassBuffers& pass, EventRound round, PhotonMap& map);
+    void scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
+                             PhotonMap& map);
     void scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
                                 const ListCounts& lists, PhotonMaps& maps);
+    void sample_exits(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);
     void walk_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round, PhotonMaps& maps);
     void trace_on(const DeviceScene& scene, const PassBuffers& pass, std::vector<EventRound> rounds,
                   const PhotonMaps& maps);
@@ -57,7 +59,7 @@ class PhotonTracer {
     Device device_;
     Kernel emit_, trace_, trace_probe_, classify_, count_, scan_, write_, scatter_;
     Kernel sample_exits_, place_exits_, deposit_, retrace_fluorescence_, retrace_elastic_, retrace_exits_, fold_exits_, sum_;
-    std::optional<Kernel> walk_;  // compiled when it is first needed
+    std::optional<Kernel> walk_, draw_exits_, integrate_;  // compiled when they are first needed
     Buffer<Ray> rays_;
     Buffer<Hit> hits_;
     Buffer<Flux16> flux_;
@@ -69,6 +71,7 @@ class PhotonTracer {
     Buffer<ExitPoint> exits_;
     Buffer<Probe> probes_;
     Buffer<Hit> probe_hits_;
+    Buffer<Flux16> powers_;  // by exit; empty until it is first needed
     Buffer<LedgerSums> sums_;
     std::uint64_t probes_traced_ = 0, refused_slots_ = 0, deposits_ = 0;
 };

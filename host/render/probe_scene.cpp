@@ -60,6 +60,7 @@ Scene probe_scene(const ProbeMaterial& source, const ProbeSettings& settings) {
     scene.render.transport = settings.transport;
     scene.render.first_collision_only = settings.first_collision_only;
     scene.render.seed = settings.seed;
+    scene.render.wavelengths = Wavelengths::uniform;  // not drawn: probe_sets() has them
     scene.render.lambda_min_nm = first_probe_lambda_nm;
     scene.render.lambda_max_nm = last_probe_lambda_nm;
     Material material;

@@ -54,7 +54,7 @@ PhotonMaps Renderer::make_maps() {
 }
 
 // By a trial pass that leaves nothing in the film. Its photons have the same flux at every wavelength: a lamp of few
-// wavelengths might be dark at all of those that were drawn.
+// wavelengths might be dark at all of those that were drawn. The camera sees the whole picture: a crop has its radius.
 double Renderer::find_first_radius() {
     pass_.make(trial_pass, photons_);
     Flux16 even;
@@ -62,11 +62,12 @@ double Renderer::find_first_radius() {
     pass_.buffers().photon_flux.upload(std::vector<Flux16>(scene_.lights.size(), even));
     for (PhotonMap& map : maps_) map.clear();
     tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
-    see_points();
+    const CameraRecord whole = make_whole_record(scene_.camera, scene_.film.width, scene_.film.height);
+    see_points(whole);
     std::vector<PhotonHead> photons;
     for (const PhotonMap& map : maps_)
         for (const PhotonHead& head : map.heads().download(map.used())) photons.push_back(head);
-    const double radius_mm = first_radius_mm(view_.camera(), gather_.points().download(), photons);
+    const double radius_mm = first_radius_mm(whole, gather_.points().download(), photons);
     film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
     device_.reset_stage_times();
     return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
@@ -81,27 +82,28 @@ void Renderer::render_pass(std::uint32_t pass) {
     pass_.make(pass, photons_);
     for (PhotonMap& map : maps_) map.clear();
     const PhotonAccount account = tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
-    see_points();
+    see_points(view_.camera());
     see_maps(radius_mm);
     book_.add(account, image_weight_nm(scene_.render.lambda_min_nm, scene_.render.lambda_max_nm));
     ++passes_;
 }
 
 // What the camera's rays meet, at the end of all reflections; emitters among it are added to the film.
-void Renderer::see_points() {
-    view_.make_rays(pass_.buffers().constants, camera_rays_);
+void Renderer::see_points(const CameraRecord& camera) {
+    view_.make_rays(camera, pass_.buffers().constants, camera_rays_);
     const RayScene& rays = on_device_.rays;
     const std::uint32_t count = view_.ray_count();
     trace_.launch(rays.kernels.packets ? (count + ray_packet - 1) / ray_packet : count, count, rays.nodes, rays.blocks,
                   rays.grid, camera_rays_, camera_hits_);
     if (on_device_.has_fresnel)
-        trace_seen_.launch(count, view_.camera(), pass_.buffers().constants, rays.nodes, rays.blocks, rays.grid,
+        trace_seen_.launch(count, camera, pass_.buffers().constants, rays.nodes, rays.blocks, rays.grid,
                            on_device_.triangles, on_device_.shapes, on_device_.materials, camera_rays_, camera_hits_);
     gather_.collect_points(seen_scene(), pass_.buffers().constants, camera_rays_, camera_hits_, film_);
 }
 
 GatherScene Renderer::seen_scene() const {
-    return {on_device_.triangles, on_device_.shapes, on_device_.materials, pass_.buffers().rows, pass_.buffers().radiance};
+    return {on_device_.triangles, on_device_.shapes,        on_device_.materials,
+            pass_.buffers().rows, pass_.buffers().radiance, on_device_.textures};
 }
 
 // Adds the photons to the film, map by map.

@@ -41,7 +41,7 @@ class Renderer {
   private:
     PhotonMaps make_maps();
     double find_first_radius();
-    void see_points();
+    void see_points(const CameraRecord& camera);
     GatherScene seen_scene() const;
     void see_maps(double radius_mm);
 

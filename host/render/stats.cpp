@@ -46,6 +46,8 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("driver", json_quoted(s.driver));
     add("ray_kernel", json_quoted(s.ray_kernel));
     add("transport", json_quoted(s.transport));
+    add("tables", s.tables ? "true" : "false");
+    add("wavelengths", json_quoted(s.wavelengths));
     add("passes", number(std::uint64_t{s.passes}));
     add("seed", number(std::uint64_t{s.seed}));
     add("width", std::to_string(s.width));

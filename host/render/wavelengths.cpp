@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/core/error.hpp"
+#include "host/render/stratified_wavelengths.hpp"
 
 namespace stokes {
 
@@ -35,5 +36,11 @@ WavelengthSet draw_wavelengths(std::uint32_t seed, std::uint32_t pass, int first
 double image_weight_nm(int first_nm, int last_nm) { return double(last_nm - first_nm + 1) / STOKES_WAVELENGTHS; }
 
 double pair_weight_nm(int first_nm, int last_nm) { return double(last_nm - first_nm) / (STOKES_WAVELENGTHS - 1); }
+
+// Light at a stratified wavelength has its rarity already: of the pair's weight, 1/(m m joint_ratio), the emitted one's
+// share is left.
+double PassWavelengths::weight_nm(std::size_t ex, std::size_t em) const {
+    return stratified ? pair_weight_nm * rarity[em] / pair_ratio(strata[ex], strata[em]) : pair_weight_nm;
+}
 
 }  // namespace stokes

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "host/core/media_limits.hpp"
+#include "host/scene/input_files.hpp"
 
 namespace stokes {
 namespace {
@@ -55,11 +56,30 @@ Fluorophore read_fluorophore(const std::string& name, const JsonCursor& where, S
     return fluorophore;
 }
 
-Material read_diffuse(const JsonCursor& where, SpectrumReader& spectra) {
+// As it looks on white paper.
+std::shared_ptr<const Picture> read_texture(const std::string& path) {
+    Picture picture = read_picture(path);
+    for (std::size_t i = 0; i < picture.opacity.size(); ++i)
+        picture.luminance[i] = picture.luminance_over(1.0f, i);
+    picture.opacity.clear();
+    return std::make_shared<const Picture>(std::move(picture));
+}
+
+using TextureFiles = InputFiles<std::shared_ptr<const Picture>, read_texture>;
+
+Material read_diffuse(const JsonCursor& where, SpectrumReader& spectra, TextureFiles& textures) {
     where.expect_keys(keys::material_diffuse);
     Material material;
     material.kind = MaterialKind::diffuse;
-    material.reflectance = spectra.read(where.at("reflectance"), Outside::hold, 1.0);
+    const JsonCursor reflectance = where.at("reflectance");
+    if (!reflectance.is(JsonValue::Type::object) || !reflectance.has("texture")) {
+        material.reflectance = spectra.read(reflectance, Outside::hold, 1.0);
+        return material;
+    }
+    reflectance.expect_keys(keys::reflectance_texture);
+    material.reflectance = spectra.read(reflectance.at("black"), Outside::hold, 1.0);
+    material.white = spectra.read(reflectance.at("white"), Outside::hold, 1.0);
+    material.texture = textures.read(reflectance.at("texture"));
     return material;
 }
 
@@ -119,12 +139,13 @@ std::vector<Fluorophore> read_fluorophores(const JsonCursor& fluorophores, Spect
 
 std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader& spectra,
                                      const Scene& scene) {
+    TextureFiles textures(spectra.folder());
     std::vector<Material> result;
     for (const auto& [name, where] : materials.named_members()) {
         Material material;
         switch (where.at("type").choice({"diffuse", "black", "translucent"})) {
             case 0:
-                material = read_diffuse(where, spectra);
+                material = read_diffuse(where, spectra, textures);
                 break;
             case 1:
                 where.expect_keys(keys::material_black);

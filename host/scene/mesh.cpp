@@ -84,6 +84,7 @@ void transform_mesh(Mesh& mesh, const glm::dmat4& transform) {
     for (glm::vec3& p : mesh.positions_mm) p = glm::vec3(transform * glm::dvec4(glm::dvec3(p), 1.0));
     if (glm::determinant(glm::dmat3(transform)) >= 0.0) return;
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+    for (auto& uv : mesh.uv) std::swap(uv[1], uv[2]);
 }
 
 std::size_t count_degenerate_triangles(const Mesh& mesh) {
@@ -94,11 +95,17 @@ std::size_t count_degenerate_triangles(const Mesh& mesh) {
 
 std::size_t drop_degenerate_triangles(Mesh& mesh) {
     const std::size_t before = mesh.triangles.size();
-    mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(),
-                                        [&](const glm::uvec3& t) { return is_degenerate(mesh, t); }),
-                         mesh.triangles.end());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < before; ++i) {
+        if (is_degenerate(mesh, mesh.triangles[i])) continue;
+        mesh.triangles[kept] = mesh.triangles[i];
+        if (!mesh.uv.empty()) mesh.uv[kept] = mesh.uv[i];
+        ++kept;
+    }
+    mesh.triangles.resize(kept);
+    if (!mesh.uv.empty()) mesh.uv.resize(kept);
     drop_unused_vertices(mesh);
-    return before - mesh.triangles.size();
+    return before - kept;
 }
 
 }  // namespace stokes

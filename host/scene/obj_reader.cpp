@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,6 +20,7 @@ class ObjParser {
         while (!scanner_.at_end()) {
             const std::string_view keyword = scanner_.token();
             if (keyword == "v") read_vertex();
+            if (keyword == "vt") read_uv();
             if (keyword == "f") read_face();
             scanner_.take_line();
         }
@@ -25,6 +28,8 @@ class ObjParser {
             fail_index(largest_index_line_, largest_index_ + 1);
         }
         if (mesh_.triangles.empty()) throw InputError(file_ + ": no triangles");
+        if (largest_uv_ < static_cast<std::int64_t>(uvs_.size()))
+            for (const auto& t : uv_triangles_) mesh_.uv.push_back({uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]});
         return std::move(mesh_);
     }
 
@@ -55,18 +60,31 @@ class ObjParser {
         mesh_.positions_mm.push_back(position);
     }
 
+    // What is no pair of finite numbers makes the mesh one without texture coordinates.
+    void read_uv() {
+        const auto u = parse_double(scanner_.token()), v = parse_double(scanner_.token());
+        const glm::vec2 uv(static_cast<float>(u.value_or(NAN)), 1.0f - static_cast<float>(v.value_or(NAN)));
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) largest_uv_ = no_uv;
+        uvs_.push_back(uv);
+    }
+
     void read_face() {
         glm::uvec3 triangle(0);
+        std::array<std::uint32_t, 3> uvs{};
         int corners = 0;
         for (std::string_view token = scanner_.token(); !token.empty(); token = scanner_.token()) {
             if (token.front() == '#') break;
-            const std::uint32_t index = read_index(token);
+            const std::uint32_t index = read_index(token), uv = read_uv_index(token);
             if (corners < 2) {
                 triangle[corners] = index;
+                uvs[static_cast<std::size_t>(corners)] = uv;
             } else {
                 triangle.z = index;
+                uvs[2] = uv;
                 mesh_.triangles.push_back(triangle);
+                if (largest_uv_ != no_uv) uv_triangles_.push_back(uvs);
                 triangle.y = index;
+                uvs[1] = uv;
             }
             ++corners;
         }
@@ -92,9 +110,30 @@ class ObjParser {
         return static_cast<std::uint32_t>(index);
     }
 
+    // The second number of "7/1/3".
+    std::uint32_t read_uv_index(std::string_view token) {
+        const std::size_t first = token.find('/');
+        const std::string_view rest = first == std::string_view::npos ? "" : token.substr(first + 1);
+        const auto number = parse_integer(rest.substr(0, rest.find('/')));
+        const auto count = static_cast<std::int64_t>(uvs_.size());
+        if (!number || *number == 0 || *number < -count ||
+            *number > std::numeric_limits<std::uint32_t>::max()) {
+            largest_uv_ = no_uv;
+            return 0;
+        }
+        const std::int64_t index = *number > 0 ? *number - 1 : count + *number;
+        largest_uv_ = std::max(largest_uv_, index);
+        return static_cast<std::uint32_t>(index);
+    }
+
+    static constexpr std::int64_t no_uv = std::numeric_limits<std::int64_t>::max();
+
     TextScanner scanner_;
     const std::string& file_;
     Mesh mesh_;
+    std::vector<glm::vec2> uvs_;
+    std::vector<std::array<std::uint32_t, 3>> uv_triangles_;  // indices of uvs_, until one is missing
+    std::int64_t largest_uv_ = -1;                            // no_uv: the mesh has no texture coordinates
     std::int64_t largest_index_ = -1;  // a face may come before its vertices, so this is checked at the end
     std::int64_t largest_index_line_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "host/core/error.hpp"
 #include "host/scene/mesh_reader.hpp"
@@ -111,6 +112,8 @@ class PlyBody {
             }
         }
         check_indices();
+        if (has_uv_ && !uvs_.empty())
+            for (const glm::uvec3& t : mesh_.triangles) mesh_.uv.push_back({uvs_[t.x], uvs_[t.y], uvs_[t.z]});
         return std::move(mesh_);
     }
 
@@ -165,25 +168,43 @@ class PlyBody {
         if (element_->count >= std::numeric_limits<std::uint32_t>::max()) {
             throw InputError(file_ + ": more vertices than 32-bit indices can count");
         }
+        const auto [u, v] = uv_properties();
+        const int properties[5] = {axes[0], axes[1], axes[2], u, v};
         mesh_.positions_mm.reserve(static_cast<std::size_t>(element_->count));
-        for (record_ = 0; record_ < element_->count; ++record_)
-            mesh_.positions_mm.push_back(take_vertex(axes));
+        if (u >= 0) uvs_.reserve(static_cast<std::size_t>(element_->count));
+        for (record_ = 0; record_ < element_->count; ++record_) take_vertex(properties);
     }
 
-    glm::vec3 take_vertex(const int (&axes)[3]) {
-        glm::vec3 position(0.0F);
+    // Indices of the texture coordinates; -1 without them.
+    std::pair<int, int> uv_properties() const {
+        const auto number = [&](const char* name) {
+            const int i = element_->property(name);
+            return i < 0 || element_->properties[static_cast<std::size_t>(i)].is_list ? -1 : i;
+        };
+        for (const auto& [u, v] :
+             {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")})
+            if (number(u) >= 0 && number(v) >= 0) return {number(u), number(v)};
+        return {-1, -1};
+    }
+
+    // wanted: which properties are x, y, z, u and v.
+    void take_vertex(const int (&wanted)[5]) {
+        float values[5] = {};
         for (int i = 0; i < static_cast<int>(element_->properties.size()); ++i) {
             const PlyProperty& property = element_->properties[static_cast<std::size_t>(i)];
-            const auto* axis = std::find(axes, axes + 3, i);
-            if (axis == axes + 3) {
+            const auto* found = std::find(wanted, wanted + 5, i);
+            if (found == wanted + 5) {
                 skip(property);
                 continue;
             }
             const auto value = static_cast<float>(take(property.type));
-            if (!std::isfinite(value)) fail("expected finite coordinates");
-            position[static_cast<int>(axis - axes)] = value;
+            const bool is_uv = found - wanted >= 3;
+            if (!std::isfinite(value) && !is_uv) fail("expected finite coordinates");
+            has_uv_ = has_uv_ && std::isfinite(value);
+            values[found - wanted] = value;
         }
-        return position;
+        mesh_.positions_mm.emplace_back(values[0], values[1], values[2]);
+        if (wanted[3] >= 0) uvs_.emplace_back(values[3], 1.0f - values[4]);
     }
 
     void read_faces() {
@@ -247,6 +268,8 @@ class PlyBody {
     bool have_vertices_ = false;
     bool have_faces_ = false;
     Mesh mesh_;
+    std::vector<glm::vec2> uvs_;  // of the vertices, where they have texture coordinates
+    bool has_uv_ = true;          // false: one of them is no number
 };
 
 }  // namespace

@@ -4,19 +4,28 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host/core/spectrum.hpp"
+#include "host/scene/picture.hpp"
 
 namespace stokes {
+
+// A window of the picture, in fractions of its width and height from the top left corner.
+struct Crop {
+    double left = 0.0, top = 0.0;
+    double width = 1.0, height = 1.0;
+};
 
 struct Camera {  // pinhole
     glm::dvec3 position_mm{0.0};
     glm::dvec3 target_mm{0.0, 0.0, -1.0};
     glm::dvec3 up{0.0, 1.0, 0.0};
-    double vertical_fov_deg = 40.0;
+    double vertical_fov_deg = 40.0;  // of the whole picture
+    Crop crop;                       // what the film shows of it
 };
 
 struct Film {
@@ -30,6 +39,14 @@ enum class Transport { paper, conserving, walk };
 // As scene files and the command line spell them, in the order of Transport.
 inline const std::vector<std::string> transport_words = {"paper", "conserving", "walk"};
 
+// How a pass draws its wavelengths: PHYSICS section 2. As scene files and the command line spell them, in order.
+enum class Wavelengths { uniform, importance };
+inline const std::vector<std::string> wavelengths_words = {"uniform", "importance"};
+
+// Which samplers a render has where it does not name them one by one: the plain ones, or those with the least noise.
+enum class Sampling { plain, best };
+inline const std::vector<std::string> sampling_words = {"plain", "best"};
+
 inline constexpr std::int64_t most_photons_per_pass = 0x10000000;
 
 struct RenderSettings {
@@ -41,8 +58,17 @@ struct RenderSettings {
     int lambda_min_nm = 300;  // inclusive
     int lambda_max_nm = 780;  // inclusive
     Transport transport = Transport::conserving;
+    bool tables = true;  // paper: false: no power tables, every photon integrates eq. 3-5 itself
     bool first_collision_only = false;  // walk: fluorophores take light up at its first collision only
+    Sampling sampling = Sampling::best;
+    std::optional<Wavelengths> wavelengths;  // none: by sampling and transport
 };
+
+// By importance, unless plain samplers are asked for, or the model `paper`, whose wavelengths are uniform.
+inline Wavelengths chosen_wavelengths(const RenderSettings& render) {
+    const bool plain = render.sampling == Sampling::plain || render.transport == Transport::paper;
+    return render.wavelengths.value_or(plain ? Wavelengths::uniform : Wavelengths::importance);
+}
 
 // sigma_s and sigma_a [1/mm] with the scene's scale factors already applied.
 struct Medium {
@@ -67,6 +93,10 @@ struct Material {
     std::string name;
     MaterialKind kind = MaterialKind::black;
     Spectrum reflectance = Spectrum::constant(0.0);  // diffuse: in [0, 1]
+    // diffuse: a picture without opacity; reflectance + luminance (white - reflectance) where it lies; or
+    // none
+    std::shared_ptr<const Picture> texture;
+    Spectrum white = Spectrum::constant(0.0);        // in [0, 1]
     int medium = -1;                                 // translucent with subsurface: index into Scene::media
     int fluorophore = -1;                            // translucent: index into Scene::fluorophores, -1: none
     double fluorescent_fraction = 0.0;               // c in [0, 1]
@@ -77,6 +107,9 @@ struct Material {
 struct Mesh {
     std::vector<glm::vec3> positions_mm;
     std::vector<glm::uvec3> triangles;  // counter-clockwise seen from outside
+    // Of each triangle's corners, the picture's top left corner at (0, 0), bottom right at (1, 1); empty:
+    // none.
+    std::vector<std::array<glm::vec2, 3>> uv = {};
 };
 
 // Shapes with the same body exchange light below their surfaces: an exit point may lie on any of them.
@@ -85,6 +118,7 @@ struct Shape {
     int material = -1;
     int body = -1;
     int light = -1;  // index into Scene::lights when this shape is the surface of an emitter
+    bool two_sided = false;  // the back is like the front, else black; opaque materials only
     Mesh mesh;
 };
 

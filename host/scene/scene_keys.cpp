@@ -10,9 +10,11 @@ const ObjectKeys scene{
 const ObjectKeys render{
     "render",
     {},
-    {"passes", "photons_per_pass", "alpha", "radius_mm", "seed", "lambda_min_nm", "lambda_max_nm"}};
+    {"passes", "photons_per_pass", "alpha", "radius_mm", "seed", "lambda_min_nm", "lambda_max_nm", "sampling",
+     "wavelengths"}};
 const ObjectKeys film{"film", {}, {"width", "height", "exposure_ev"}};
-const ObjectKeys camera{"camera", {"position_mm", "target_mm"}, {"up", "vertical_fov_deg"}};
+const ObjectKeys camera{"camera", {"position_mm", "target_mm"}, {"up", "vertical_fov_deg", "crop"}};
+const ObjectKeys crop{"crop", {"left", "top", "width", "height"}, {}};
 
 const ObjectKeys spectrum_file{"spectrum_file", {"file", "column"}, {"scale", "outside"}};
 const ObjectKeys spectrum_illuminant{"spectrum_illuminant", {"illuminant"}, {}};
@@ -24,6 +26,7 @@ const ObjectKeys medium{
 const ObjectKeys fluorophore{
     "fluorophore", {"excitation", "emission"}, {"conversion_per_nm", "quantum_yield"}};
 
+const ObjectKeys reflectance_texture{"reflectance_texture", {"texture", "black", "white"}, {}};
 const ObjectKeys material_diffuse{"material_diffuse", {"type", "reflectance"}, {}};
 const ObjectKeys material_black{"material_black", {"type"}, {}};
 const ObjectKeys material_translucent{
@@ -65,6 +68,14 @@ const ObjectKeys shape_prism{
 const ObjectKeys shape_cylinder{"shape_cylinder",
                                 {"type", "material", "radius_mm", "height_mm"},
                                 {"name", "body", "transform", "segments"}};
+const ObjectKeys shape_mask{"shape_mask",
+                            {"type", "material", "width_mm", "height_mm", "file"},
+                            {"name", "body", "transform", "threshold", "invert"}};
+const ObjectKeys shape_tiles{
+    "shape_tiles", {"type", "materials", "columns", "rows", "size_mm"}, {"name", "transform"}};
+const ObjectKeys shape_sectors{"shape_sectors",
+                               {"type", "materials", "radius_mm", "height_mm"},
+                               {"name", "transform", "segments", "start_deg"}};
 
 const ObjectKeys transform_scale{"transform_scale", {"scale"}, {}};
 const ObjectKeys transform_rotate{"transform_rotate", {"rotate_axis", "angle_deg"}, {}};
@@ -78,12 +89,14 @@ std::vector<ObjectKeys> all_object_keys() {
             render,
             film,
             camera,
+            crop,
             spectrum_file,
             spectrum_illuminant,
             spectrum_pairs,
             spectrum_constant,
             medium,
             fluorophore,
+            reflectance_texture,
             material_diffuse,
             material_black,
             material_translucent,
@@ -99,6 +112,9 @@ std::vector<ObjectKeys> all_object_keys() {
             shape_disk,
             shape_prism,
             shape_cylinder,
+            shape_mask,
+            shape_tiles,
+            shape_sectors,
             transform_scale,
             transform_rotate,
             transform_translate};

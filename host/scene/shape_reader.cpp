@@ -5,21 +5,24 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
-#include <new>
 
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
+#include "host/scene/input_files.hpp"
+#include "host/scene/mask.hpp"
 #include "host/scene/material_reader.hpp"
 #include "host/scene/mesh.hpp"
 #include "host/scene/mesh_reader.hpp"
+#include "host/scene/picture.hpp"
 #include "host/scene/shapes.hpp"
-#include "host/scene/spectrum_reader.hpp"
 
 namespace stokes {
 namespace {
 
 constexpr NumberRange scale_range{-1e9, 1e9};
 constexpr NumberRange angle_range{-1e6, 1e6};
+constexpr int most_tiles = 512;  // along an edge
+constexpr int most_sectors = 360;
 
 double length(const JsonCursor& where, const char* key) {
     return where.at(key).number(length_range);
@@ -63,27 +66,10 @@ glm::dmat4 read_transform(const JsonCursor& shape) {
     return result;
 }
 
-// Meshes by path, so that a file used twice is read once.
-class MeshFiles {
-  public:
-    explicit MeshFiles(const std::filesystem::path& folder) : folder_(folder) {}
-
-    const Mesh& read(const JsonCursor& file) {
-        const std::string path = scene_path(folder_, file.text());
-        const auto found = meshes_.find(path);
-        if (found != meshes_.end()) return found->second;
-        try {
-            return meshes_.emplace(path, read_mesh(path)).first->second;
-        } catch (const InputError& error) {
-            file.fail(error.what());
-        } catch (const std::bad_alloc&) {
-            file.fail(path + ": this mesh is too large for the memory");
-        }
-    }
-
-  private:
-    const std::filesystem::path& folder_;
-    std::map<std::string, Mesh> meshes_;
+struct ShapeFiles {
+    explicit ShapeFiles(const std::filesystem::path& folder) : meshes(folder), pictures(folder) {}
+    InputFiles<Mesh, read_mesh> meshes;
+    InputFiles<Picture, read_picture> pictures;
 };
 
 Mesh read_round_shape(const JsonCursor& where, std::size_t type) {
@@ -99,13 +85,30 @@ Mesh read_round_shape(const JsonCursor& where, std::size_t type) {
     return make_cylinder(length(where, "radius_mm"), length(where, "height_mm"), segments(where));
 }
 
-Mesh read_shape_mesh(const JsonCursor& where, MeshFiles& files) {
-    const auto type =
-        where.at("type").choice({"mesh", "box", "sphere", "rectangle", "disk", "prism", "cylinder"});
+Mesh read_mask(const JsonCursor& where, ShapeFiles& files) {
+    where.expect_keys(keys::shape_mask);
+    const JsonCursor file = where.at("file");
+    MaskTexels texels;
+    texels.threshold = where.number_or("threshold", texels.threshold, {0.0, 1.0, true});
+    if (const auto invert = where.find("invert")) texels.invert = invert->boolean();
+    const double width = length(where, "width_mm"), height = length(where, "height_mm");
+    const Picture& picture = files.pictures.read(file);
+    try {
+        return make_mask(picture, width, height, texels);
+    } catch (const InputError& error) {
+        file.fail(error.what());
+    }
+}
+
+const std::vector<std::string> shape_types = {"mesh",  "box",      "sphere", "rectangle", "disk",
+                                              "prism", "cylinder", "mask",   "tiles",     "sectors"};
+constexpr std::size_t mask_type = 7, tiles_type = 8, sectors_type = 9;
+
+Mesh read_shape_mesh(const JsonCursor& where, std::size_t type, ShapeFiles& files) {
     switch (type) {
         case 0:
             where.expect_keys(keys::shape_mesh);
-            return files.read(where.at("file"));
+            return files.meshes.read(where.at("file"));
         case 1:
             where.expect_keys(keys::shape_box);
             return make_box(where.at("size_mm").vector(length_range));
@@ -116,8 +119,68 @@ Mesh read_shape_mesh(const JsonCursor& where, MeshFiles& files) {
             where.expect_keys(keys::shape_prism);
             return make_prism(static_cast<int>(where.at("sides").integer(3, 2048)),
                               length(where, "radius_mm"), length(where, "height_mm"));
+        case mask_type:
+            return read_mask(where, files);
         default:
             return read_round_shape(where, type);
+    }
+}
+
+const Material& material_of(const Scene& scene, int material) {
+    return scene.materials[static_cast<std::size_t>(material)];
+}
+
+// Light from below the surface of one part leaves through the others too.
+std::vector<int> read_part_materials(const JsonCursor& where, const Scene& scene) {
+    const std::vector<JsonCursor> items = where.items();
+    if (items.empty()) where.fail_expected("one or more names of materials");
+    std::vector<int> materials;
+    const auto is_translucent = [&](int m) {
+        const Material& material = material_of(scene, m);
+        return material.kind == MaterialKind::translucent && material.subsurface;
+    };
+    for (const JsonCursor& item : items) {
+        materials.push_back(index_of_name(item, "materials", scene.materials));
+        if (is_translucent(materials.back()) != is_translucent(materials.front()))
+            item.fail(fmt::format(
+                "expected materials all with light below their surfaces or all without, got \"{}\" and "
+                "\"{}\"",
+                material_of(scene, materials.front()).name, item.text()));
+    }
+    return materials;
+}
+
+std::vector<Mesh> read_parts(const JsonCursor& where, std::size_t type, std::size_t material_count) {
+    const JsonCursor materials = where.at("materials");
+    const auto parts = static_cast<int>(material_count);
+    if (type == tiles_type) {
+        const auto columns = static_cast<int>(where.at("columns").integer(1, most_tiles));
+        const auto rows = static_cast<int>(where.at("rows").integer(1, most_tiles));
+        const glm::dvec3 size = where.at("size_mm").vector(length_range);
+        if (parts >= columns + rows)
+            materials.fail_expected(
+                fmt::format("at most {} materials for {} x {} tiles", columns + rows - 1, columns, rows));
+        return make_tiles(size, columns, rows, parts);
+    }
+    if (parts > most_sectors) materials.fail_expected(fmt::format("at most {} materials", most_sectors));
+    return make_sectors(length(where, "radius_mm"), length(where, "height_mm"), parts, segments(where),
+                        where.number_or("start_deg", 0.0, angle_range));
+}
+
+// Shapes of several materials: one shape of the scene for each, of one body.
+void read_compound(const JsonCursor& where, std::size_t type, const std::string& name, Scene& scene) {
+    where.expect_keys(type == tiles_type ? keys::shape_tiles : keys::shape_sectors);
+    const std::vector<int> materials = read_part_materials(where.at("materials"), scene);
+    const std::vector<Mesh> parts = read_parts(where, type, materials.size());
+    const glm::dmat4 transform = read_transform(where);
+    const int body = scene.body_count++;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Shape shape;
+        shape.name = fmt::format("{} ({})", name, material_of(scene, materials[i]).name);
+        shape.material = materials[i];
+        shape.body = body;
+        shape.mesh = parts[i];
+        add_shape(where, std::move(shape), transform, scene);
     }
 }
 
@@ -148,15 +211,25 @@ void warn_of_triangles(const JsonCursor& where, const std::string& name, std::si
 }  // namespace
 
 void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene) {
-    MeshFiles files(folder);
+    ShapeFiles files(folder);
     std::map<std::string, int> bodies;
     std::vector<std::string> names;
     for (const JsonCursor& where : shapes.items()) {
+        const std::size_t type = where.at("type").choice(shape_types);
+        const std::string name = read_own_name(where, fmt::format("shape {}", names.size()), names);
+        names.push_back(name);
+        if (type == tiles_type || type == sectors_type) {
+            read_compound(where, type, name, scene);
+            continue;
+        }
         Shape shape;
-        shape.mesh = read_shape_mesh(where, files);
-        shape.name = read_own_name(where, fmt::format("shape {}", names.size()), names);
-        names.push_back(shape.name);
+        shape.mesh = read_shape_mesh(where, type, files);
+        shape.name = name;
         shape.material = index_of_name(where.at("material"), "materials", scene.materials);
+        shape.two_sided = type == mask_type;
+        if (shape.two_sided && material_of(scene, shape.material).kind == MaterialKind::translucent)
+            where.at("material")
+                .fail("expected a black or diffuse material for a mask, got a translucent one");
         shape.body = read_body(where, shape.material, scene, bodies);
         add_shape(where, std::move(shape), read_transform(where), scene);
     }
@@ -172,6 +245,13 @@ int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform,
                 fmt::format("expected coordinates {} mm, got {}", coordinate_range.text(), position[axis]));
         }
     }
+    const Material& material = material_of(scene, shape.material);
+    if (!material.texture) shape.mesh.uv.clear();
+    if (material.texture && shape.mesh.uv.empty())
+        where.fail(fmt::format(
+            "the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
+            "mesh with texture coordinates",
+            material.name));
     const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
     const std::size_t flat = std::min(flat_before, dropped);
     if (shape.mesh.triangles.empty()) {

@@ -13,8 +13,8 @@ namespace stokes {
 void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene);
 
 // Appends a shape moved to its place by transform: drops triangles without area, there or already before,
-// with a warning; throws InputError at where when none is left, or when a coordinate is not finite or too
-// large. Returns its index.
+// with a warning; throws InputError at where when none is left, when a coordinate is not finite or too
+// large, or when the material has a texture and the mesh no uv. Returns its index.
 int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform, Scene& scene);
 
 // The key "name" of a shape or light, or "KIND INDEX" without one; a name in taken is an error.

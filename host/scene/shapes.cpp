@@ -1,5 +1,7 @@
 #include "host/scene/shapes.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace stokes {
@@ -40,6 +42,20 @@ void add_band(Mesh& mesh, std::uint32_t lower, std::uint32_t upper, std::uint32_
         mesh.triangles.push_back({lower + k, lower + next, upper + next});
         mesh.triangles.push_back({lower + k, upper + next, upper + k});
     }
+}
+
+// Four corners, counter-clockwise seen from outside.
+void add_quad(Mesh& mesh, const std::array<glm::vec3, 4>& corners) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions_mm.size());
+    mesh.positions_mm.insert(mesh.positions_mm.end(), corners.begin(), corners.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+void add_triangle(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions_mm.size());
+    mesh.positions_mm.insert(mesh.positions_mm.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
 }
 
 }  // namespace
@@ -87,7 +103,10 @@ Mesh make_sphere(double radius_mm, int segments) {
 Mesh make_rectangle(double width_mm, double height_mm) {
     const auto w = static_cast<float>(0.5 * width_mm);
     const auto h = static_cast<float>(0.5 * height_mm);
-    return {{{-w, 0, -h}, {-w, 0, h}, {w, 0, h}, {w, 0, -h}}, {{0, 1, 2}, {0, 2, 3}}};
+    const glm::vec2 uv[4] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+    return {{{-w, 0, -h}, {-w, 0, h}, {w, 0, h}, {w, 0, -h}},
+            {{0, 1, 2}, {0, 2, 3}},
+            {{uv[0], uv[1], uv[2]}, {uv[0], uv[2], uv[3]}}};
 }
 
 Mesh make_disk(double radius_mm, int segments) {
@@ -95,6 +114,11 @@ Mesh make_disk(double radius_mm, int segments) {
     const std::uint32_t centre = add_point(mesh, 0.0);
     const std::uint32_t edge = add_circle(mesh, segments, radius_mm, 0.0);
     add_fan(mesh, centre, edge, static_cast<std::uint32_t>(segments), true);
+    const auto scale = static_cast<float>(0.5 / radius_mm);
+    const auto uv = [&](std::uint32_t i) {
+        return glm::vec2(mesh.positions_mm[i].x, mesh.positions_mm[i].z) * scale + 0.5f;
+    };
+    for (const glm::uvec3& t : mesh.triangles) mesh.uv.push_back({uv(t.x), uv(t.y), uv(t.z)});
     return mesh;
 }
 
@@ -111,6 +135,51 @@ Mesh make_prism(int sides, double radius_mm, double height_mm) {
 
 Mesh make_cylinder(double radius_mm, double height_mm, int segments) {
     return make_prism(segments, radius_mm, height_mm);
+}
+
+std::vector<Mesh> make_tiles(const glm::dvec3& size_mm, int columns, int rows, int parts) {
+    const glm::dvec3 counts(columns, 1, rows);
+    const auto corner = [&](const glm::ivec3& c) {
+        return glm::vec3(size_mm * (glm::dvec3(c) / counts - glm::dvec3(0.5)));
+    };
+    std::vector<Mesh> meshes(static_cast<std::size_t>(parts));
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i) {
+            Mesh& mesh = meshes[static_cast<std::size_t>((i + j) % parts)];
+            const auto add_face = [&](const glm::ivec3& a, const glm::ivec3& b, const glm::ivec3& c,
+                                      const glm::ivec3& d) {
+                add_quad(mesh, {corner(a), corner(b), corner(c), corner(d)});
+            };
+            const int k = i + 1, l = j + 1;
+            add_face({i, 1, j}, {i, 1, l}, {k, 1, l}, {k, 1, j});
+            add_face({i, 0, j}, {k, 0, j}, {k, 0, l}, {i, 0, l});
+            if (i == 0) add_face({i, 0, j}, {i, 0, l}, {i, 1, l}, {i, 1, j});
+            if (k == columns) add_face({k, 0, j}, {k, 1, j}, {k, 1, l}, {k, 0, l});
+            if (j == 0) add_face({i, 0, j}, {i, 1, j}, {k, 1, j}, {k, 0, j});
+            if (l == rows) add_face({i, 0, l}, {k, 0, l}, {k, 1, l}, {i, 1, l});
+        }
+    return meshes;
+}
+
+std::vector<Mesh> make_sectors(double radius_mm, double height_mm, int sectors, int segments,
+                               double start_deg) {
+    const int per_sector = (std::max(segments, 3) + sectors - 1) / sectors, n = per_sector * sectors;
+    const double start = glm::radians(start_deg);
+    const auto rim = [&](int k, double y) {
+        const double angle = start + 2.0 * pi * (k % n) / n;
+        return glm::vec3(glm::dvec3(radius_mm * std::cos(angle), y, -radius_mm * std::sin(angle)));
+    };
+    const glm::vec3 top(glm::dvec3(0.0, height_mm, 0.0)), bottom(0.0f);
+    std::vector<Mesh> meshes(static_cast<std::size_t>(sectors));
+    for (int k = 0; k < n; ++k) {
+        Mesh& mesh = meshes[static_cast<std::size_t>(k / per_sector)];
+        const glm::vec3 a = rim(k, 0.0), b = rim(k + 1, 0.0), c = rim(k + 1, height_mm),
+                        d = rim(k, height_mm);
+        add_quad(mesh, {a, b, c, d});
+        add_triangle(mesh, bottom, b, a);
+        add_triangle(mesh, top, d, c);
+    }
+    return meshes;
 }
 
 }  // namespace stokes

@@ -20,6 +20,8 @@ class SpectrumReader {
   public:
     explicit SpectrumReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+    const std::filesystem::path& folder() const { return folder_; }
+
     // Takes in the scene's "spectra". Throws InputError.
     void define(const JsonCursor& spectra);
 

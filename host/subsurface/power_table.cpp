@@ -52,13 +52,7 @@ PowerTable empty_table(const std::string& component, const std::string& unit, co
     table.model = "paper";
     table.component = component;
     table.unit = unit;
-    table.medium = {medium.name, {}, {}, medium.eta, medium.dipole_eta};
-    for (double lambda_nm : grid.lambda_nm) {
-        const double sigma_s = medium.sigma_s.at(lambda_nm), sigma_a = medium.sigma_a.at(lambda_nm);
-        check_coefficients(medium.name, lambda_nm, sigma_s, sigma_a);
-        table.medium.sigma_s.push_back(sigma_s);
-        table.medium.sigma_a.push_back(sigma_a);
-    }
+    table.medium = table_medium(medium, grid.lambda_nm);
     table.axes.push_back({"r", "mm", grid.r_mm});
     if (with_theta) table.axes.push_back({"theta", "deg", grid.theta_deg});
     table.axes.push_back({"lambda", "nm", grid.lambda_nm});
@@ -106,6 +100,17 @@ TableGrid::TableGrid() {
         theta_deg.push_back(i * 9 / 10.0);
         lambda_nm.push_back(300.0 + 5.0 * i);
     }
+}
+
+TableMedium table_medium(const MediumSpectra& medium, const std::vector<double>& lambda_nm) {
+    TableMedium result{medium.name, {}, {}, medium.eta, medium.dipole_eta};
+    for (const double lambda : lambda_nm) {
+        const double sigma_s = medium.sigma_s.at(lambda), sigma_a = medium.sigma_a.at(lambda);
+        check_coefficients(medium.name, lambda, sigma_s, sigma_a);
+        result.sigma_s.push_back(sigma_s);
+        result.sigma_a.push_back(sigma_a);
+    }
+    return result;
 }
 
 PowerTable make_fluorescence_table(const MediumSpectra& medium, const TableGrid& grid) {

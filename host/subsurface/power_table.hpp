@@ -54,10 +54,14 @@ struct TableGrid {
     TableGrid();
 };
 
+// The medium at these wavelengths [nm]. Throws InputError naming the medium and the wavelength where a coefficient is
+// negative or not finite, or where sigma_s + sigma_a is 0 (the integrals diverge) or too small or too large to compute
+// with.
+TableMedium table_medium(const MediumSpectra& medium, const std::vector<double>& lambda_nm);
+
 // The three tables of the model `paper`: axes (r, theta, lambda), for multiple scattering (r, lambda).
 // Units: T_F [mm], T_S [1], T_M [1/mm^2]. Relative error of every value below 1e-9.
-// Throws InputError naming the medium and the wavelength where a coefficient is negative or not finite, or
-// where sigma_s + sigma_a is 0 (the integrals diverge) or too small or too large to compute with.
+// Throws InputError for a grid that is not one, and as table_medium() does.
 PowerTable make_fluorescence_table(const MediumSpectra& medium, const TableGrid& grid = {});
 PowerTable make_single_table(const MediumSpectra& medium, const TableGrid& grid = {});
 PowerTable make_multiple_table(const MediumSpectra& medium, const TableGrid& grid = {});

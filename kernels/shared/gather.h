@@ -20,14 +20,14 @@
 typedef struct GatherPoint {
     float x, y, z;          // [mm]
     unsigned int pixel;     // y * width + x
-    float nx, ny, nz;       // outward geometric normal, unit length
+    float nx, ny, nz;       // geometric normal on the side that is seen, unit length
     unsigned int material;  // index into the MaterialRecord buffer
     unsigned int maps;      // bit STOKES_MAP_*: photons of this map count; 0: nothing to gather
     // Factor on the density estimate: MaterialRecord.exit_scale where the surface reflects, else 1 (collect_points),
     // times 1 / the share of the disk on the surface, in the mean (measure_disks).
     float weight;
     unsigned int reflected;  // 1: seen in a reflection; 0: the point lies on the pixel's own ray
-    unsigned int pad;
+    float luminance;         // of the material's texture there, in [0, 1]; 0 without one
 } GatherPoint;
 STOKES_ASSERT_SIZE(GatherPoint, 48);
 

@@ -4,6 +4,9 @@
 
 #include "limits.h"
 
+// Sets drawn in strata have 2^level bands of 16 / 2^level wavelengths each, for levels below this.
+#define STOKES_STRATA_LEVELS 5
+
 // The transport models of PHYSICS sections 3, 4 and 5.
 #define STOKES_TRANSPORT_PAPER 0u
 #define STOKES_TRANSPORT_CONSERVING 1u
@@ -24,8 +27,14 @@ typedef struct PassConstants {
     float offset_mm;           // rays start this far above the surface they leave
     unsigned int transport;    // STOKES_TRANSPORT_*
     unsigned int first_collision_only;  // `walk`: 1: fluorophores take light up at its first collision only
-    unsigned int pad0, pad1;
+    // 1: the wavelengths are drawn by importance, in strata; chain is void, the rows hold each pair's own weight, and
+    // lib/reradiation.clh needs the rest of this.
+    unsigned int stratified;
+    unsigned int pad0;
+    unsigned int strata[16];  // each wavelength's stratum, 0 to 15, never decreasing
+    float level_shares[STOKES_STRATA_LEVELS];  // how often sets are drawn in 1, 2, 4, 8, 16 bands of equal counts
+    float pad1[3];
 } PassConstants;
-STOKES_ASSERT_SIZE(PassConstants, 352);
+STOKES_ASSERT_SIZE(PassConstants, 448);
 
 #endif

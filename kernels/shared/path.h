@@ -49,7 +49,8 @@ typedef struct PathLedger {
     float reference_flux;        // mean flux at emission [W/nm], the measure for roulette
     unsigned int conversions;    // how often its light has been re-radiated
     unsigned int reflections;    // how often it was reflected specularly
-    unsigned int pad[2];
+    unsigned int history;        // stratified wavelengths: bit k: its light was taken up at the pass's wavelength k
+    unsigned int leader;         // the one that the event in progress takes it up at, or STOKES_NONE
 } PathLedger;
 STOKES_ASSERT_SIZE(PathLedger, 96);
 
@@ -68,7 +69,7 @@ STOKES_ASSERT_SIZE(LedgerSums, 112);
 typedef struct SurfacePoint {
     float x, y, z;          // [mm]
     unsigned int material;  // index into the MaterialRecord buffer
-    float nx, ny, nz;       // geometric normal, outward, unit length
+    float nx, ny, nz;       // geometric normal on the side that was met, unit length
     unsigned int body;
 } SurfacePoint;
 STOKES_ASSERT_SIZE(SurfacePoint, 32);
@@ -77,6 +78,7 @@ STOKES_ASSERT_SIZE(SurfacePoint, 32);
 #define STOKES_SAMPLER_PAPER 0u      // distance from the component's power table, PHYSICS section 3
 #define STOKES_SAMPLER_DIRECT 1u     // straight from the first collision to the surface: G0 of PHYSICS section 4
 #define STOKES_SAMPLER_SCATTERED 2u  // distance from the Green's function table: G1
+#define STOKES_SAMPLER_INTEGRATED 3u // PHYSICS section 3 without tables, by integrate_power.cl; below the same as PAPER
 
 // One subsurface exit. Written by sample_exits, place_exits and deposit_exits.
 typedef struct ExitPoint {

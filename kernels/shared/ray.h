@@ -34,12 +34,12 @@ STOKES_ASSERT_SIZE(Probe, 32);
 
 // One triangle of the scene, in the order of the scene's shapes. Written by the host once per scene.
 typedef struct Triangle {
-    float v0x, v0y, v0z;  // first vertex [mm]
-    unsigned int shape;   // index into the ShapeRecord buffer
-    float e1x, e1y, e1z;  // v1 - v0 [mm]; the geometric normal is e1 x e2, outward
-    unsigned int body;    // shapes of one body share subsurface light
-    float e2x, e2y, e2z;  // v2 - v0 [mm]
-    unsigned int pad;
+    float v0x, v0y, v0z;     // first vertex [mm]
+    unsigned int shape;      // index into the ShapeRecord buffer
+    float e1x, e1y, e1z;     // v1 - v0 [mm]; the geometric normal is e1 x e2, outward
+    unsigned int body;       // shapes of one body share subsurface light
+    float e2x, e2y, e2z;     // v2 - v0 [mm]
+    unsigned int two_sided;  // 1: the back is like the front; 0: the back is black
 } Triangle;
 STOKES_ASSERT_SIZE(Triangle, 48);
 

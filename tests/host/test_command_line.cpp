@@ -79,7 +79,7 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
     };
     for (const Case& c : std::vector<Case>{
              {"", "subcommand"},
-             {"frobnicate", "\"frobnicate\" is no subcommand; there are: render, tables, probe, devices"},
+             {"frobnicate", "\"frobnicate\" is no subcommand; there are: render, tables, probe, compare, devices"},
              {"render", "scene"},
              {"render " + sphere_scene, "output"},
              {"render nowhere.json" + out, "nowhere.json"},
@@ -92,6 +92,8 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
              {"render " + sphere_scene + " --size 0x4" + out, "--size"},
              {"render " + sphere_scene + " --alpha 2" + out, "alpha"},
              {"render " + sphere_scene + " --radius 0" + out, "radius"},
+             {"render " + sphere_scene + " --wavelengths some" + out, "--wavelengths"},
+             {"render " + sphere_scene + " --sampling rich" + out, "--sampling"},
              {"render " + sphere_scene + " --alpha nan" + out, "--alpha: expected a number"},
              {"render " + sphere_scene + " --radius nan" + out, "--radius: expected a number"},
              {"render " + sphere_scene + " --exposure nan" + out, "--exposure: expected a number"},
@@ -175,6 +177,27 @@ TEST_CASE("the command line's transport takes the scene's place, and the outputs
         CHECK(std::get<std::string>(read_exr(folder.file("a.exr")).attributes.at("stokes.transport")) ==
               used);
     }
+}
+
+TEST_CASE("a scene's crop is rendered, and the picture says which it is", "[command line]") {
+    const TemporaryFolder folder;
+    const std::string render = "render " + folder.file("s.json") + small_render + "--quiet -o " + folder.file("a.exr");
+    const auto crop_scene = [&](const std::string& left) {
+        put_file(folder.file("s.json"),
+                 edited_sphere_scene("\"camera\": {", "\"camera\": {\"crop\": {\"left\": " + left +
+                                                         ", \"top\": 0.125, \"width\": 0.5, \"height\": 0.5}, "));
+    };
+    crop_scene("0.25");
+    REQUIRE(run_stokes(render).code == 0);
+    const ExrImage image = read_exr(folder.file("a.exr"));
+    CHECK(image.width == 24);
+    CHECK(image.height == 16);
+    CHECK(std::get<std::string>(image.attributes.at("stokes.crop")) == "0.25 0.125 0.5 0.5");
+    crop_scene("0.75");
+    const Outcome outside = run_stokes(render);
+    CHECK(outside.code == 2);
+    CHECK(outside.err ==
+          "stokes: " + folder.file("s.json") + ":5: camera.crop: expected left + width up to 1, got 1.25\n");
 }
 
 TEST_CASE("a transport that there is not is bad input, in one line", "[command line]") {

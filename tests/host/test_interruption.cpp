@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "host/core/csv_table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/run_stokes.hpp"
 
@@ -89,6 +90,36 @@ TEST_CASE("an interrupted render writes the passes it has", "[command line]") {
     const auto stats = nlohmann::json::parse(file_content(folder.file("a.json")));
     CHECK(stats["passes"] >= 1);
     CHECK(stats["passes"] < 100000000);
+}
+
+TEST_CASE("an interrupted or killed render leaves its error curve up to there", "[command line]") {
+    const TemporaryFolder folder;
+    const std::string reference = folder.file("r.exr"), csv = folder.file("e.csv");
+    REQUIRE(run_stokes("render " + sphere_scene + small_render + "--quiet -o " + reference).code == 0);
+    {
+        TerminalRender render({"--rmse-against", reference, "--csv", csv, "--stats", folder.file("a.json")});
+        REQUIRE(render.wait_for("pass 3"));
+        render.press_ctrl_c();
+        CHECK(render.end() == 130);
+    }
+    const CsvTable curve = read_csv(csv);
+    REQUIRE(curve.lines.size() >= 3);
+    CHECK(curve.values[0][0] == 1);
+    CHECK(curve.values[0][1] == 2);
+    CHECK(curve.values[0].back() == nlohmann::json::parse(file_content(folder.file("a.json")))["passes"]);
+    {
+        TerminalRender render({"--rmse-against", reference, "--csv", csv, "--every", "1", "--quiet"});
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+        // The curve of the render before is replaced by that of this one, which has every pass.
+        for (CsvTable rows = curve; rows.lines.size() < 30 || rows.values[0][29] != 30.0; rows = read_csv(csv)) {
+            if (std::chrono::steady_clock::now() > end) FAIL("no row after two minutes");
+            ::usleep(1000);
+        }
+    }  // killed
+    const CsvTable left = read_csv(csv);
+    CHECK(left.lines.size() >= 30);
+    CHECK(left.values[0].back() == static_cast<double>(left.lines.size()));
+    CHECK(file_content(csv).back() == '\n');
 }
 
 // With no compiled kernels at hand, so that the signal falls into a build: the driver's linker must not die

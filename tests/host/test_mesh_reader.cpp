@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
 
@@ -219,4 +220,47 @@ TEST_CASE("The shipped meshes are what their README says") {
     CHECK(dragon.positions_mm.size() == 22447);
     CHECK(dragon.triangles.size() == 44894);
     CHECK(mesh_volume_mm3(dragon) > 0.0);
+}
+
+namespace {
+
+using Uv = std::array<glm::vec2, 3>;
+
+}  // namespace
+
+TEST_CASE("OBJ texture coordinates follow the corners, v counted from the top") {
+    const Mesh mesh = parse_obj(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1 0\n"
+        "f 1/1 2/2/1 3/3 4/-1\n",
+        "m.obj");
+    REQUIRE(mesh.uv.size() == 2);
+    CHECK(mesh.uv[0] == Uv{glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(1, 0.25)});
+    CHECK(mesh.uv[1] == Uv{glm::vec2(0, 1), glm::vec2(1, 0.25), glm::vec2(0, 0)});
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 nan\n";
+    for (const char* face :
+         {"f 1 2 3\n", "f 1/1 2/1 3\n", "f 1/1 2/3 3/1\n", "f 1//1 2//1 3//1\n", "f 1/1 2/-3 3/1\n"}) {
+        INFO(face);
+        CHECK(
+            parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\n" + std::string(face), "m.obj").uv.empty());
+    }
+    CHECK(parse_obj(vertices + "f 1/1 2/1 3/1\n", "m.obj").uv.empty());
+}
+
+TEST_CASE("PLY texture coordinates belong to the vertices, by any of their usual names") {
+    for (const auto& [u, v] :
+         {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")}) {
+        const auto text = [&](const std::string& last) {
+            return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float " +
+                   std::string(v) + "\nproperty float y\nproperty float z\nproperty float " + u +
+                   "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                   "0 0 0 0 0\n1 0.25 0 0 1\n1 1 1 0 " +
+                   last + "\n3 0 1 2\n";
+        };
+        const Mesh mesh = parse_ply(text("0.5"), "m.ply");
+        CHECK(mesh.positions_mm[2] == glm::vec3(1, 1, 0));
+        REQUIRE(mesh.uv.size() == 1);
+        CHECK(mesh.uv[0] == Uv{glm::vec2(0, 1), glm::vec2(1, 0.75), glm::vec2(0.5, 0)});
+        CHECK(parse_ply(text("nan"), "m.ply").uv.empty());
+    }
+    CHECK(parse_ply(ascii_square, "m.ply").uv.empty());
 }

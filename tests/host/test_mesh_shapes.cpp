@@ -137,3 +137,29 @@ TEST_CASE("A triangle that rounding alone gives an area is dropped, a thin one i
     transform_mesh(thin, glm::rotate(glm::dmat4(1.0), 0.1, glm::dvec3(0.48, 0.6, 0.64)));
     CHECK(drop_degenerate_triangles(thin) == 0);
 }
+
+// (u, v) is an affine function of the place: check it at every corner.
+TEST_CASE("Rectangles and disks have texture coordinates, from (0, 0) at the least x and z to (1, 1)") {
+    Mesh disk = make_disk(3, 12), rectangle = make_rectangle(6, 6);
+    for (const bool mirrored : {false, true}) {
+        for (Mesh* mesh : {&disk, &rectangle}) {
+            REQUIRE(mesh->uv.size() == mesh->triangles.size());
+            for (std::size_t i = 0; i < mesh->triangles.size(); ++i)
+                for (int k = 0; k < 3; ++k) {
+                    const glm::vec3 p = mesh->positions_mm[mesh->triangles[i][k]];
+                    const glm::vec2 uv = mesh->uv[i][static_cast<std::size_t>(k)];
+                    CHECK(uv.x == Approx((mirrored ? -p.x : p.x) / 6 + 0.5).margin(1e-6));
+                    CHECK(uv.y == Approx(p.z / 6 + 0.5).margin(1e-6));
+                }
+            transform_mesh(*mesh, glm::scale(glm::dmat4(1.0), {-1, 1, 1}));
+        }
+    }
+}
+
+TEST_CASE("Triangles that are dropped take their texture coordinates with them") {
+    Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 2}}, {{}, {}}};
+    mesh.uv[1][2] = {0.5f, 0.25f};
+    CHECK(drop_degenerate_triangles(mesh) == 1);
+    REQUIRE(mesh.uv.size() == 1);
+    CHECK(mesh.uv[0][2] == glm::vec2(0.5f, 0.25f));
+}

@@ -1,3 +1,6 @@
+#include <chrono>
+#include <thread>
+
 #include "host/commands/progress.hpp"
 #include "tests/support/catch.hpp"
 
@@ -56,4 +59,13 @@ TEST_CASE("what a progress line has no room for goes in order", "[progress]") {
 TEST_CASE("lines of a log have no bar", "[progress]") {
     CHECK(progress_line(half, std::string::npos, false) ==
           "pass 32/64  0.11 M photons/s  elapsed 1:15  remaining 1:15");
+}
+
+TEST_CASE("what pauses the passes is not counted", "[progress]") {
+    Progress progress(4, true);
+    progress.start();
+    const double before_s = progress.elapsed_s();
+    progress.pause([] { std::this_thread::sleep_for(std::chrono::milliseconds(400)); });
+    CHECK(progress.elapsed_s() - before_s < 0.3);
+    CHECK(progress.elapsed_s() >= before_s);
 }

@@ -45,12 +45,23 @@ Scene scene_with(const std::string& what, const std::string& replacement) {
 
 }  // namespace
 
+TEST_CASE("A camera shows the whole picture, or the window that the scene says") {
+    const Crop whole = parse_scene(base, "s.json").camera.crop;
+    CHECK((whole.left == 0.0 && whole.top == 0.0 && whole.width == 1.0 && whole.height == 1.0));
+    const Crop crop = scene_with("\"vertical_fov_deg\": 30",
+                                 R"("crop": {"left": 0.7, "top": 0.25, "width": 0.3, "height": 0.125})")
+                          .camera.crop;
+    CHECK((crop.left == 0.7 && crop.top == 0.25 && crop.width == 0.3 && crop.height == 0.125));
+}
+
 TEST_CASE("A scene's settings, media and materials arrive as written") {
     const Scene scene = parse_scene(base, "s.json");
     CHECK(scene.file == "s.json");
     CHECK(scene.render.passes == 4);
     CHECK(scene.render.photons_per_pass == 1000);
     CHECK(scene.render.alpha == 0.5);
+    CHECK(scene.render.sampling == Sampling::best);
+    CHECK_FALSE(scene.render.wavelengths);
     CHECK(scene.render.radius_mm == 2.0);
     CHECK(scene.render.seed == 9);
     CHECK(scene.film.width == 8);

@@ -83,13 +83,17 @@ TEST_CASE("The schema has the reader's limits") {
     CHECK(property("render", "photons_per_pass").at("maximum") == most_photons_per_pass);
     CHECK(property("medium", "dipole_eta").at("maximum") == largest_dipole_eta);
     for (const auto& [kind, key] :
-         {std::pair("material_diffuse", "reflectance"), std::pair("fluorophore", "excitation"),
-          std::pair("fluorophore", "emission")})
+         {std::pair("reflectance_texture", "black"), std::pair("reflectance_texture", "white"),
+          std::pair("fluorophore", "excitation"), std::pair("fluorophore", "emission")})
         CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
+    CHECK(property("material_diffuse", "reflectance").at("$ref") == "#/$defs/reflectance");
+    CHECK(schema.at("$defs").at("reflectance").at("oneOf").at(0).at("$ref") == "#/$defs/spectrum_up_to_1");
     CHECK(property("scene", "transport").at("enum") == transport_words);
     CHECK(property("scene", "transport").at("default") ==
           transport_words[static_cast<std::size_t>(RenderSettings().transport)]);
     CHECK(property("material_translucent", "fresnel").at("default") == Material().fresnel);
     CHECK(property("fluorophore", "quantum_yield").at("maximum") == 1);
+    for (const char* key : {"left", "top", "width", "height"}) CHECK(property("crop", key).at("maximum") == 1);
+    for (const char* key : {"width", "height"}) CHECK(property("crop", key).at("minimum") == 0.001);
     CHECK(schema.at("$defs").at("spectrum_up_to_1").at("allOf").at(1).at("maximum") == 1);
 }

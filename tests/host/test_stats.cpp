@@ -17,6 +17,8 @@ RenderStats example() {
     stats.driver = "3.1";
     stats.ray_kernel = "avx2";
     stats.transport = "walk";
+    stats.tables = false;
+    stats.wavelengths = "importance";
     stats.passes = 12;
     stats.seed = 4000000000u;
     stats.width = 640;
@@ -57,6 +59,8 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     CHECK(json.at("passes") == 12);
     CHECK(json.at("transport") == "walk");
     CHECK(json.at("ray_kernel") == "avx2");
+    CHECK(json.at("tables") == false);
+    CHECK(json.at("wavelengths") == "importance");
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
     CHECK(json.at("photons_emitted") == 12000000000ull);
@@ -87,6 +91,7 @@ TEST_CASE("statistics of nothing are still JSON", "[stats]") {
     const nlohmann::json json = written(RenderStats{});
     CHECK(json.at("photons_per_second") == 0.0);
     CHECK(json.at("stages").empty());
+    CHECK(json.at("tables") == true);
     CHECK(json.at("dropped").empty());
 }
 

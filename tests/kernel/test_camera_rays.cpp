@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "host/render/camera_view.hpp"
@@ -122,6 +123,70 @@ TEST_CASE("the field of view spans the height of the picture", "[camera]") {
     CHECK(record.corner_y + 200 * record.down_y == Approx(-1.0));
 }
 
+// The whole picture has 80 x 60 pixels, the crop 24 x 9 of them from (20, 30).
+TEST_CASE("the rays of a crop are those of its part of the whole picture", "[camera][tiny]") {
+    const Camera whole = test_camera();
+    Camera cropped = whole;
+    cropped.crop = {20.0 / 80.0, 30.0 / 60.0, 24.0 / 80.0, 9.0 / 60.0};
+    const CameraRecord full = make_camera_record(whole, 80, 60), part = make_camera_record(cropped, 24, 9);
+    CHECK(part.width == 24);
+    CHECK(part.height == 9);
+    for (int x : {0, 11, 24})
+        for (int y : {0, 5, 9}) {
+            const auto direction = [](const CameraRecord& c, int column, int row) {
+                const double i = column, j = row;
+                return glm::dvec3(c.corner_x + i * c.right_x + j * c.down_x, c.corner_y + i * c.right_y + j * c.down_y,
+                                  c.corner_z + i * c.right_z + j * c.down_z);
+            };
+            CHECK(glm::length(direction(part, x, y) - direction(full, x + 20, y + 30)) < 1e-6);
+        }
+    const std::vector<Ray> rays = rays_of_pass(part, 3);
+    const std::vector<Uint2> pixels = pixels_of_rays(24, 9);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const glm::dvec2 offset =
+            film_point(whole, 80, 60, rays[i]) - glm::dvec2(pixels[i].x + 20.0, pixels[i].y + 30.0);
+        REQUIRE(offset.x > -1e-4);
+        REQUIRE(offset.x < 1.0 + 1e-4);
+        REQUIRE(offset.y > -1e-4);
+        REQUIRE(offset.y < 1.0 + 1e-4);
+    }
+}
+
+// Of a picture of 1600 x 400 pixels a window of 40 x 20: each pixel is one of that picture, and square.
+TEST_CASE("a crop has square pixels, as many as the film, in a whole picture of their own number", "[camera]") {
+    Camera camera = test_camera();
+    camera.crop = {0.5, 0.9, 0.025, 0.05};
+    const CameraRecord record = make_camera_record(camera, 40, 20);
+    const double pixel = 2.0 * std::tan(glm::radians(25.0)) / 400.0;
+    const glm::dvec3 right(record.right_x, record.right_y, record.right_z);
+    const glm::dvec3 down(record.down_x, record.down_y, record.down_z);
+    CHECK(glm::length(right) == Approx(pixel).epsilon(1e-5));
+    CHECK(glm::length(down) == Approx(pixel).epsilon(1e-5));
+    Ray first{};
+    first.dx = record.corner_x;
+    first.dy = record.corner_y;
+    first.dz = record.corner_z;
+    const glm::dvec2 corner = film_point(camera, 1600, 400, first);
+    CHECK(corner.x == Approx(800.0).margin(1e-3));
+    CHECK(corner.y == Approx(360.0).margin(1e-3));
+}
+
+TEST_CASE("the whole picture around a crop has the film's pixels and the crop's proportions", "[camera]") {
+    Camera camera = test_camera();
+    const CameraRecord plain = make_camera_record(camera, 80, 60);
+    camera.crop = {0.3, 0.1, 0.25, 0.25};
+    const CameraRecord whole = make_whole_record(camera, 80, 60);
+    CHECK(std::memcmp(&whole, &plain, sizeof plain) == 0);
+    camera.crop = {0.3, 0.1, 0.5, 0.25};  // 160 x 240 pixels
+    const CameraRecord narrow = make_whole_record(camera, 80, 60), tall = make_camera_record(test_camera(), 160, 240);
+    CHECK(narrow.width == 80);
+    CHECK(narrow.corner_x == Approx(tall.corner_x));
+    CHECK(narrow.corner_y == Approx(tall.corner_y));
+    CHECK(narrow.corner_z == Approx(tall.corner_z));
+    CHECK(narrow.right_x == Approx(2.0 * tall.right_x));
+    CHECK(narrow.down_y == Approx(4.0 * tall.down_y));
+}
+
 TEST_CASE("a camera that cannot look is refused", "[camera]") {
     Camera camera = test_camera();
     CHECK_THROWS_AS(make_camera_record(camera, 0, 10), InputError);
@@ -133,5 +198,8 @@ TEST_CASE("a camera that cannot look is refused", "[camera]") {
     CHECK_THROWS_AS(make_camera_record(camera, 10, 10), InputError);
     camera = test_camera();
     camera.vertical_fov_deg = 180.0;
+    CHECK_THROWS_AS(make_camera_record(camera, 10, 10), InputError);
+    camera = test_camera();
+    camera.crop.width = 0.0;
     CHECK_THROWS_AS(make_camera_record(camera, 10, 10), InputError);
 }

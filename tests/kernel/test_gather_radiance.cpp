@@ -5,6 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/normals.hpp"
+#include "tests/support/textures.hpp"
 
 using namespace stokes;
 
@@ -115,11 +116,9 @@ class Bench {
             lights[0].v[k] = emitted(k);
         }
         const Device& device = test_device();
-        scene_ = {{device, "triangles", triangles},
-                  {device, "shapes", shapes},
-                  {device, "materials", materials},
-                  {device, "spectra", spectra},
-                  {device, "emitted", lights}};
+        scene_ = {{device, "triangles", triangles}, {device, "shapes", shapes},
+                  {device, "materials", materials}, {device, "spectra", spectra},
+                  {device, "emitted", lights},      no_textures(materials.size())};
         rays_ = {device, "rays", rays};
         hits_ = {device, "hits", hits};
     }

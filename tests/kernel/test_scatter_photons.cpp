@@ -8,6 +8,7 @@
 #include "tests/support/normals.hpp"
 #include "tests/support/photon_fixture.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/textures.hpp"
 
 using namespace stokes;
 
@@ -22,6 +23,11 @@ struct Arrivals {
     std::vector<SurfacePoint> points;
     std::vector<Flux16> flux, spectra;
     std::vector<PathLedger> ledgers;
+    // Where materials have textures:
+    std::vector<Hit> hits = {};
+    std::vector<TextureRecord> textures = {};
+    std::vector<float> texels = {};
+    std::vector<TriangleUv> uv = {};
 };
 
 struct Scattered {
@@ -39,10 +45,16 @@ Scattered scatter(const Arrivals& a, EventRound round, std::size_t slots, std::u
                          map_flux = on_device(std::vector<Flux16>(slots, constant_flux(-1.0f)));
     const Buffer<PathLedger> ledgers = on_device(a.ledgers);
     const Buffer<PhotonHead> heads = on_device(std::vector<PhotonHead>(slots, PhotonHead{0, 0, 0, empty}));
+    const bool textured = !a.textures.empty();
+    const DeviceTextures textures =
+        textured ? DeviceTextures{on_device(a.textures), on_device(a.texels), on_device(a.uv)}
+                 : no_textures(a.spectra.size());
+    const Buffer<Hit> hits = on_device(textured ? a.hits : std::vector<Hit>(a.flux.size(), Hit{}));
     Program(test_device(), "scatter_photons.cl")
         .kernel("scatter_diffuse")
         .launch(round.count, round, pass_on_device(seed, 0, offset_mm), on_device(a.list),
-                on_device(a.points), on_device(a.spectra), rays, flux, ledgers, heads, map_flux);
+                on_device(a.points), hits, on_device(a.spectra), textures.records, textures.texels,
+                textures.uv, rays, flux, ledgers, heads, map_flux);
     return {rays.download(), flux.download(), ledgers.download(), heads.download(), map_flux.download()};
 }
 
@@ -187,6 +199,36 @@ TEST_CASE("a photon without flux ends", "[scatter_photons][tiny]") {
     for (const std::uint32_t path : a.list) {
         CHECK(s.ledgers[path].fate == STOKES_FATE_ABSORBED);
         CHECK(s.ledgers[path].absorbed.energy == 0.0f);
+    }
+}
+
+// Materials 2 and 3 with one texture, white where material 1 is, at the luminances 0.25 and 0.75 of the
+// middles of its two texels; the others without.
+TEST_CASE("a texture's reflectance is what the photon that meets it loses and keeps",
+          "[scatter_photons][tiny]") {
+    Arrivals a = random_arrivals(400);
+    const TextureRecord none{0, 0, 0, STOKES_NONE}, texture{2, 1, 0, 1};
+    a.textures = {none, none, texture, texture};
+    a.texels = {0.25f, 0.75f};
+    a.uv = {{0.25f, 0.5f, 0.75f, 0.5f, 0.25f, 0.5f}};
+    for (std::size_t path = 0; path < a.flux.size(); ++path)
+        a.hits.push_back({1.0f, path % 4 == 0 ? 0.0f : 1.0f, 0.0f, 0});
+    const Scattered s = scatter(a, round_from(0, 400), 400);
+    for (const std::uint32_t path : a.list) {
+        check_path(a, s, path);
+        const std::uint32_t material = a.points[path].material;
+        const float luminance = material < 2 ? 0.0f : path % 4 == 0 ? 0.25f : 0.75f;
+        Flux16 reflected;
+        for (std::size_t k = 0; k < 16; ++k) {
+            const float black = a.spectra[material].v[k];
+            reflected.v[k] = a.flux[path].v[k] * (black + luminance * (a.spectra[1].v[k] - black));
+        }
+        const double arriving = sum_of(a.flux[path]), leaving = sum_of(reflected);
+        CHECK(double(s.ledgers[path].absorbed.energy) == Approx(arriving - leaving).margin(1e-4));
+        if (s.ledgers[path].fate != STOKES_FATE_ALIVE) continue;
+        for (std::size_t k = 0; k < 16; ++k)
+            CHECK(double(s.flux[path].v[k]) ==
+                  Approx(double(reflected.v[k]) * arriving / leaving).epsilon(1e-5));
     }
 }
 

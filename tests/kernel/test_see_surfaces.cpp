@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/textures.hpp"
 #include "tests/support/traced_scene.hpp"
 
 using namespace stokes;
@@ -66,7 +67,8 @@ class Bench {
                   {device, "shapes", shapes},
                   {device, "materials", materials},
                   {device, "spectra", std::vector<Flux16>(materials.size())},
-                  {device, "emitted", std::vector<Flux16>{light}}};
+                  {device, "emitted", std::vector<Flux16>{light}},
+                  no_textures(materials.size())};
     }
 
     Seen see(const std::vector<Ray>& rays, std::uint32_t pass_index = 0) {

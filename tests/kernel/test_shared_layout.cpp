@@ -9,6 +9,7 @@
 #include "kernels/shared/gather.h"
 #include "kernels/shared/green.h"
 #include "kernels/shared/hash_grid.h"
+#include "kernels/shared/integrated_power.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/pass.h"
@@ -16,6 +17,7 @@
 #include "kernels/shared/photon.h"
 #include "kernels/shared/power_table.h"
 #include "kernels/shared/ray.h"
+#include "kernels/shared/texture.h"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 
@@ -43,11 +45,15 @@ using namespace stokes;
         F(CameraRecord, down_y) F(CameraRecord, down_z) F(CameraRecord, pad1) \
     S(GatherPoint) F(GatherPoint, x) F(GatherPoint, y) F(GatherPoint, z) F(GatherPoint, pixel) \
         F(GatherPoint, nx) F(GatherPoint, ny) F(GatherPoint, nz) F(GatherPoint, material) \
-        F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, reflected) F(GatherPoint, pad) \
+        F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, reflected) F(GatherPoint, luminance) \
     S(HashGrid) F(HashGrid, origin_x) F(HashGrid, origin_y) F(HashGrid, origin_z) \
         F(HashGrid, cells_per_mm) F(HashGrid, cells_x) F(HashGrid, cells_y) F(HashGrid, cells_z) \
         F(HashGrid, row_mask) F(HashGrid, keys) F(HashGrid, bucket_shift) F(HashGrid, radius_mm) \
         F(HashGrid, stride) \
+    S(PassMedium) F(PassMedium, sigma_s) F(PassMedium, sigma_a) F(PassMedium, dipole_a) F(PassMedium, pad) \
+    S(DistanceMixture) F(DistanceMixture, first) F(DistanceMixture, count) F(DistanceMixture, r_max_mm) \
+        F(DistanceMixture, theta_max_deg) F(DistanceMixture, reach_f_mm) F(DistanceMixture, reach_s_mm) \
+        F(DistanceMixture, pad) \
     S(LightRecord) F(LightRecord, kind) F(LightRecord, first_triangle) F(LightRecord, triangle_count) \
         F(LightRecord, cumulative_probability) F(LightRecord, px) F(LightRecord, py) F(LightRecord, pz) \
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
@@ -61,11 +67,13 @@ using namespace stokes;
         F(PassConstants, to_z) F(PassConstants, chain) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
         F(PassConstants, offset_mm) F(PassConstants, transport) F(PassConstants, first_collision_only) \
-        F(PassConstants, pad0) F(PassConstants, pad1) \
+        F(PassConstants, stratified) F(PassConstants, pad0) F(PassConstants, strata) \
+        F(PassConstants, level_shares) F(PassConstants, pad1) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \
         F(PathLedger, stored) F(PathLedger, fate) F(PathLedger, missed_exits) F(PathLedger, rays) \
-        F(PathLedger, reference_flux) F(PathLedger, conversions) F(PathLedger, reflections) F(PathLedger, pad) \
+        F(PathLedger, reference_flux) F(PathLedger, conversions) F(PathLedger, reflections) \
+        F(PathLedger, history) F(PathLedger, leader) \
     S(LightSum) F(LightSum, energy) F(LightSum, photons) \
     S(LedgerSums) F(LedgerSums, light) F(LedgerSums, fates) F(LedgerSums, missed_exits) F(LedgerSums, rays) \
         F(LedgerSums, reflections) F(LedgerSums, pad) \
@@ -99,7 +107,11 @@ using namespace stokes;
         F(Probe, body) \
     S(Triangle) F(Triangle, v0x) F(Triangle, v0y) F(Triangle, v0z) F(Triangle, shape) F(Triangle, e1x) \
         F(Triangle, e1y) F(Triangle, e1z) F(Triangle, body) F(Triangle, e2x) F(Triangle, e2y) \
-        F(Triangle, e2z) F(Triangle, pad)
+        F(Triangle, e2z) F(Triangle, two_sided) \
+    S(TextureRecord) F(TextureRecord, width) F(TextureRecord, height) F(TextureRecord, first_texel) \
+        F(TextureRecord, white_row) \
+    S(TriangleUv) F(TriangleUv, u0) F(TriangleUv, v0) F(TriangleUv, u1) F(TriangleUv, v1) F(TriangleUv, u2) \
+        F(TriangleUv, v2)
 // clang-format on
 
 namespace {

@@ -69,6 +69,7 @@ inline Camera camera_above(const glm::dvec3& point_mm, double height_mm, double 
     return camera;
 }
 
+// Of a scene that draws them uniformly.
 inline WavelengthSet wavelengths_of(const Scene& scene, std::uint32_t pass) {
     return draw_wavelengths(scene.render.seed, pass, scene.render.lambda_min_nm, scene.render.lambda_max_nm);
 }

@@ -57,6 +57,7 @@ Material translucent(double fraction) {
 
 Scene furnace_scene(double reflectance) {
     Scene scene;
+    scene.render.wavelengths = Wavelengths::uniform;
     scene.file = "furnace";
     scene.materials = {diffuse(reflectance)};
     Mesh mesh = make_sphere(100.0, 64);
@@ -77,6 +78,7 @@ Scene furnace_scene(double reflectance) {
 
 Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transport) {
     Scene scene;
+    scene.render.wavelengths = Wavelengths::uniform;
     scene.render.transport = transport;
     scene.file = "slab";
     scene.media = {marble_green()};
@@ -102,6 +104,7 @@ Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transp
 
 Scene small_scene(Transport transport) {
     Scene scene;
+    scene.render.wavelengths = Wavelengths::uniform;
     scene.render.transport = transport;
     scene.file = "small";
     scene.media = {marble_green()};

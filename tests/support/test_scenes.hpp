@@ -1,4 +1,4 @@
-// Scenes whose light is known.
+// Scenes whose light is known. Passes draw their wavelengths uniformly, as draw_wavelengths() does.
 #pragma once
 
 #include "host/scene/scene.hpp"
