@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "host/core/error.hpp"
 #include "host/scene/bvh_parallel.hpp"
 
 namespace stokes {
@@ -13,6 +14,7 @@ namespace stokes {
 namespace {
 
 constexpr double grid_counts = 65535.0;
+constexpr std::size_t most_nodes = std::size_t{1} << 28;
 
 // How far counts may raise the mean number of tests that follow from one. Float nodes are tested as fast but
 // 1.75 times as large; nodes of counts make up a twentieth of nodes and blocks.
@@ -195,6 +197,8 @@ bool write_bvh(const BvhTree& tree, const std::vector<Triangle>& triangles, unsi
     if (wide.levels > STOKES_BVH_LEVELS) return false;
     bvh.grid.root = root;
     bvh.node_count = wide.nodes.size();
+    // Packets of rays keep a node and its child in one word.
+    if (bvh.node_count > most_nodes) throw InputError("the scene's bounding volumes have more than 2^28 nodes");
     bvh.blocks.resize(wide.blocks);
     if (tree.leaf()) bvh.blocks[0] = make_block(tree, triangles);
     write_blocks(wide, triangles, threads, bvh);
