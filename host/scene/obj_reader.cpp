@@ -30,6 +30,7 @@ class ObjParser {
         if (mesh_.triangles.empty()) throw InputError(file_ + ": no triangles");
         if (largest_uv_ != no_uv && largest_uv_ >= static_cast<std::int64_t>(uvs_.size()))
             drop_uv(largest_uv_line_, fmt::format("texture coordinate {} of {}", largest_uv_ + 1, uvs_.size()));
+        if (uvs_.empty()) mesh_.uv_fault.clear();
         if (largest_uv_ != no_uv)
             for (const auto& t : uv_triangles_) mesh_.uv.push_back({uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]});
         return std::move(mesh_);
