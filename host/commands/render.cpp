@@ -35,8 +35,8 @@ extern "C" void catch_signal(int signal) {
 
 struct RenderOptions {
     std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
-    std::string reference_file, csv_file, sampling, wavelengths;
-    int passes = 0, every = 0;
+    std::string reference_file, csv_file, sampling, wavelengths, branches;
+    int passes = 0, every = 0, exits = 0;
     DeviceFlags device;
     std::int64_t photons = 0;
     std::uint32_t seed = 0;
@@ -61,9 +61,14 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--sampling")) {
         render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
         render.wavelengths.reset();
+        render.branches.reset();
+        render.exits.reset();
     }
     if (command.count("--wavelengths"))
         render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
+    if (command.count("--branches"))
+        render.branches = static_cast<Branches>(index_of_word(options.branches, branches_words));
+    if (command.count("--exits")) render.exits = options.exits;
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -277,6 +282,14 @@ void add_render_command(CLI::App& app) {
                      "How a pass draws its wavelengths; default: importance, for transport paper uniform")
         ->type_name("HOW")
         ->check(word_of(wavelengths_words));
+    command
+        ->add_option("--branches", options->branches,
+                     "What a photon stores where it enters: one branch, or both; default: both with transport conserving")
+        ->type_name("HOW")
+        ->check(word_of(branches_words));
+    command->add_option("--exits", options->exits, "Transport conserving: exit points an entry; default 1")
+        ->type_name("N")
+        ->check(CLI::Range(1, most_exits));
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));
