@@ -53,9 +53,10 @@ PhotonTracer::PhotonTracer(const Device& device, const RayKernels& kernels, std:
     sample_exits_ = subsurface.kernel("sample_exits");
     place_exits_ = subsurface.kernel("place_exits");
     deposit_ = subsurface.kernel("deposit_exits");
-    retrace_fluorescence_ = subsurface.kernel("retrace_fluorescence");
-    retrace_elastic_ = subsurface.kernel("retrace_elastic");
-    retrace_exits_ = subsurface.kernel("retrace_exits");
+    const Program going_on(device, "retrace_subsurface.cl");
+    retrace_fluorescence_ = going_on.kernel("retrace_fluorescence");
+    retrace_elastic_ = going_on.kernel("retrace_elastic");
+    retrace_exits_ = going_on.kernel("retrace_exits");
     fold_exits_ = kernels.program(device, "fold_exits.cl").kernel("fold_exits");
     sum_ = Program(device, "sum_ledgers.cl").kernel("sum_ledgers");
 }
