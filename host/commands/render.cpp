@@ -66,9 +66,17 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     }
     if (command.count("--wavelengths"))
         render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
-    if (command.count("--branches"))
+    if (command.count("--branches")) {
+        if (render.transport == Transport::walk)
+            throw InputError("--branches: expected transport \"paper\" or \"conserving\", got \"walk\"");
         render.branches = static_cast<Branches>(index_of_word(options.branches, branches_words));
-    if (command.count("--exits")) render.exits = options.exits;
+    }
+    if (command.count("--exits")) {
+        if (render.transport != Transport::conserving)
+            throw InputError("--exits: expected transport \"conserving\", got \"" +
+                             transport_words[static_cast<std::size_t>(render.transport)] + "\"");
+        render.exits = options.exits;
+    }
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -93,6 +101,8 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.device", stats.device},
             {"stokes.transport", stats.transport},
             {"stokes.wavelengths", stats.wavelengths},
+            {"stokes.branches", stats.branches},
+            {"stokes.exits", stats.exits},
             {"stokes.passes", static_cast<int>(stats.passes)},
             {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
             {"stokes.seed", static_cast<double>(stats.seed)},
@@ -115,6 +125,8 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
     stats.tables = scene.render.transport != Transport::walk && scene.render.tables;
     stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
+    stats.branches = branches_words[static_cast<std::size_t>(chosen_branches(scene.render))];
+    stats.exits = chosen_exits(scene.render);
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;

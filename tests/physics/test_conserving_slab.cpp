@@ -72,7 +72,7 @@ TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[c
         scene.media[0].sigma_a = scene.media[0].sigma_a.scaled(c.albedo_scale);
         const DeviceScene on_device(device, scene);
         PassMaker pass(device, scene, on_device);
-        const std::uint32_t batches = 24, photons = 32768;
+        const std::uint32_t batches = 20, photons = 32768;
         PhotonTracer tracer(device, on_device.rays.kernels, photons);
         PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                         PhotonMap(device, "surface", 16)};
