@@ -147,8 +147,8 @@ typedef struct Collision {
     float16 taken_up, sent_on;  // [W/nm]
 } Collision;
 
-// Model `conserving`, and surface fluorescence. flux arrives; each wavelength is weighted for the way that was drawn and
-// has its own probability of the branch, over that of drawing the branch where one was drawn (lib/first_collision.clh).
+// Model `conserving`, and surface fluorescence. flux arrives; each wavelength is weighted for the way that was drawn
+// and has its own probability of the branch, over that of drawing the branch where one was drawn (lib/first_collision.clh).
 // both: no branch was drawn. The re-radiation rows include the excitation E. leader: of reemit().
 FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global const float16* spectra,
                                __global const PassConstants* pass, bool fluorescent, bool both, float way_mm,

@@ -296,7 +296,7 @@ void add_render_command(CLI::App& app) {
         ->check(word_of(wavelengths_words));
     command
         ->add_option("--branches", options->branches,
-                     "What a photon stores where it enters: one branch, or both; default: both with transport conserving")
+                     "What a photon stores where it enters: one branch, or both; default: both with conserving")
         ->type_name("HOW")
         ->check(word_of(branches_words));
     command->add_option("--exits", options->exits, "Transport conserving: exit points an entry; default 1")

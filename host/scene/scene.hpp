@@ -43,8 +43,8 @@ inline const std::vector<std::string> transport_words = {"paper", "conserving", 
 enum class Wavelengths { uniform, importance };
 inline const std::vector<std::string> wavelengths_words = {"uniform", "importance"};
 
-// Which light is stored where a photon enters a translucent material: that of the branch that was drawn, fluorescence or
-// elastic scattering, or that of both. As scene files and the command line spell them, in order.
+// Which light is stored where a photon enters a translucent material: that of the branch that was drawn, fluorescence
+// or elastic scattering, or that of both. As scene files and the command line spell them, in order.
 enum class Branches { roulette, both };
 inline const std::vector<std::string> branches_words = {"roulette", "both"};
 

@@ -117,8 +117,8 @@ typedef struct EventRound {
 } EventRound;
 STOKES_ASSERT_SIZE(EventRound, 48);
 
-// Where the exits of a list of events stand, in groups of one component each: direct and scattered ones of a branch, and
-// with STOKES_EVENT_BRANCHES those of the other branch. Passed by value.
+// Where the exits of a list of events stand, in groups of one component each: direct and scattered ones of a branch,
+// and with STOKES_EVENT_BRANCHES those of the other branch. Passed by value.
 typedef struct ExitGroups {
     unsigned int count;  // 2 or 4
     unsigned int component[4];   // STOKES_MAP_*

@@ -339,8 +339,8 @@ TEST_CASE("conserving exits lie about the foot of the first collision", "[deposi
         }
 }
 
-// Several exits of an event: the cosine of a direct exit, which is uniform, runs through all strata, azimuths are a golden
-// ratio of a turn apart, and the first exit is the one of an event with one exit.
+// Several exits of an event: the cosine of a direct exit, which is uniform, runs through all strata, azimuths are a
+// golden ratio of a turn apart, and the first exit is the one of an event with one exit.
 TEST_CASE("several exits of an event are stratified", "[deposit_subsurface][tiny]") {
     const SubsurfaceArrivals a(120);
     const std::vector<MaterialRecord> materials = conserving_materials(0.0f);
@@ -356,7 +356,8 @@ TEST_CASE("several exits of an event are stratified", "[deposit_subsurface][tiny
             const Probe* probes = &several.probes[before + i * count];
             const SurfacePoint& p = a.points[a.elastic[i]];
             const glm::dvec3 n(p.nx, p.ny, p.nz), entry(p.x, p.y, p.z), d = direction_of(a.rays[a.elastic[i]]);
-            const double eta = double(materials[p.material].eta), cos_in = -glm::dot(d, n), way = double(exits[0].way_mm);
+            const double eta = double(materials[p.material].eta), cos_in = -glm::dot(d, n),
+                         way = double(exits[0].way_mm);
             const double depth = way * std::sqrt(1.0 - (1.0 - cos_in * cos_in) / (eta * eta));
             const glm::dvec3 foot = entry + (d + cos_in * n) / eta * way;
             CAPTURE(count, i);

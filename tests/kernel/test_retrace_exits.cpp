@@ -249,7 +249,8 @@ void check_branches(double kept_share) {
         const Flux16& event = g % 2 == 0 ? sent_on[g] : taken_up[g - 1];
         for (std::uint32_t i = 0; i < paths; ++i)
             for (std::size_t k = 0; k < each; ++k) {
-                const glm::dvec3 normal(0.0, std::cos(0.3 * double(g * each + k)), std::sin(0.3 * double(g * each + k)));
+                const double tilt = 0.3 * double(g * each + k);
+                const glm::dvec3 normal(0.0, std::cos(tilt), std::sin(tilt));
                 e.exits.push_back(exit_at(normal, i, stored[g][k], event, g * each + k != missed, 0));
                 maps[components[g]].push_back(stored[g][k]);
             }

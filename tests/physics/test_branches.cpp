@@ -98,7 +98,8 @@ void check_same(const Stored& a, const Stored& b, double largest_error) {
     for (std::size_t m = 0; m < 3; ++m) {
         for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
             CAPTURE(m, k);
-            if (m != STOKES_MAP_FLUORESCENCE || a.flux[m][k].mean() > 0.0) check_same(a.flux[m][k], b.flux[m][k], largest_error);
+            if (m != STOKES_MAP_FLUORESCENCE || a.flux[m][k].mean() > 0.0)
+                check_same(a.flux[m][k], b.flux[m][k], largest_error);
         }
         for (std::size_t d = 0; d < distances_mm.size(); ++d) {
             CAPTURE(m, distances_mm[d]);

@@ -102,7 +102,8 @@ TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[c
         for (std::size_t m = 0; m < 3; ++m)
             for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
                 const Sample& sample = stored[m][k];
-                CAPTURE(c.angle_deg, c.fresnel, c.exits, static_cast<int>(c.branches), m, wavelengths.set[k], sample.mean(), expected[m][k]);
+                CAPTURE(c.angle_deg, c.fresnel, c.exits, static_cast<int>(c.branches), m);
+                CAPTURE(wavelengths.set[k], sample.mean(), expected[m][k]);
                 CAPTURE(sample.mean() / expected[m][k], sample.standard_error() / expected[m][k]);
                 CHECK(sample.standard_error() <= 0.03 * expected[m][k]);
                 CHECK(std::abs(sample.mean() - expected[m][k]) <=
