@@ -218,7 +218,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::string> outputs = {options.exr_file, options.png_file, options.stats_file, options.csv_file};
     if (std::all_of(outputs.begin(), outputs.end(), [](const std::string& file) { return file.empty(); }))
-        throw InputError("render: expected an output, -o OUT.exr, --png OUT.png or --stats FILE.json");
+        throw InputError("render: expected an output, -o OUT.exr, --png OUT.png, --stats FILE.json or --csv FILE.csv");
     check_outputs(outputs, options.scene_file);
     check_keeps(outputs, options.reference_file, "the reference");
     Scene scene = read_scene(options.scene_file);

@@ -49,6 +49,7 @@ Allocation::Allocation(const Device& device, const std::string& name, std::size_
     }
     owner_->bytes = bytes;
     shared.memory_in_use += bytes;
+    ++shared.allocations;
 }
 
 // Kernels that are still under way may use the memory.
@@ -71,6 +72,7 @@ void Allocation::read(void* data, std::size_t bytes, std::size_t offset) const {
                                                bytes, data, 0, nullptr, nullptr);
     if (error != CL_SUCCESS)
         throw RunError("reading " + owner_->name + " failed, OpenCL error " + std::to_string(error));
+    owner_->device.shared_->bytes_read += bytes;
 }
 
 void Allocation::copy_to(const Allocation& target, std::size_t bytes) const {

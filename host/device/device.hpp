@@ -97,6 +97,9 @@ class Device {
     // buffer.
     void set_memory_budget(std::uint64_t bytes) { shared_->memory_budget = bytes; }
     std::uint64_t memory_in_use() const { return shared_->memory_in_use; }
+    // So far: how many buffers were made, and how much was read back from them [bytes].
+    std::uint64_t allocations() const { return shared_->allocations; }
+    std::uint64_t bytes_read() const { return shared_->bytes_read; }
     std::uint64_t memory_left() const {
         return shared_->memory_budget - std::min(shared_->memory_in_use, shared_->memory_budget);
     }
@@ -112,7 +115,7 @@ class Device {
         std::size_t local_size = 64;
         std::optional<RayShape> ray_shape;
         std::function<bool()> stop;
-        std::uint64_t memory_budget = 0, memory_in_use = 0;
+        std::uint64_t memory_budget = 0, memory_in_use = 0, allocations = 0, bytes_read = 0;
         std::map<std::string, StageTime> stage_times;
         std::vector<std::pair<std::string, cl::Event>> pending;
     };

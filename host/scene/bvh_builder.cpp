@@ -26,8 +26,8 @@ constexpr std::array<int, 3> area_levels_tried{96, 24, STOKES_BVH_LEVELS - 28};
 // Spatial splits may add as many refs as there are triangles. Small scenes may add more: 6 MB of blocks.
 constexpr std::size_t always_added = 1 << 17;
 
-// A tree with spatial splits is taken when its expected cost is so much of the one without: what pays for a
-// split need not pay for the whole.
+// A tree with spatial splits is taken when its expected cost is at most this share of that of a tree without:
+// splits that pay one by one, as of a hall's walls beside small triangles, need not pay together.
 constexpr float most_cut_cost = 0.95f;
 
 bool placeable(const BvhBox& box) {
@@ -109,7 +109,7 @@ Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhLayout& layout, u
         const auto tree = build(area_levels, 0, may_cut);
         if (may_cut && area_levels == area_levels_tried.front()) {
             const auto cut = build(area_levels, std::max(triangles.size(), always_added), may_cut);
-            if (cut->cost() < most_cut_cost * tree->cost() && write_bvh(*cut, triangles, threads, bvh)) break;
+            if (cut->cost() <= most_cut_cost * tree->cost() && write_bvh(*cut, triangles, threads, bvh)) break;
         }
         if (write_bvh(*tree, triangles, threads, bvh)) break;
     }

@@ -46,8 +46,9 @@ Bins fill_bins(const BvhSet& set, const BvhClipper& clipper, std::size_t axis, c
     for (std::uint32_t i = begin; i < end; ++i) {
         const BvhRef& ref = set.ref(i);
         // Planes with lo < plane < hi cut the ref.
-        const auto first = std::upper_bound(planes.begin(), planes.end(), ref.box.lo[axis]) - planes.begin();
-        const auto last = std::max(first, std::lower_bound(planes.begin() + first, planes.end(), ref.box.hi[axis]) - planes.begin());
+        const float lo = ref.box.lo[axis], hi = ref.box.hi[axis];
+        const auto first = std::upper_bound(planes.begin(), planes.end(), lo) - planes.begin();
+        const auto last = std::lower_bound(planes.begin() + first, planes.end(), hi) - planes.begin();
         ++bins[first].begins;
         ++bins[last].ends;
         if (first == last) {

@@ -49,7 +49,7 @@ double split_cost(const BvhBox& left, std::uint32_t left_count, const BvhBox& ri
 
 // Maps twice the centre of a box on one axis to a bin; the same arithmetic bins and partitions.
 struct BvhBinning {
-    static constexpr int bins = 32;
+    static constexpr int bins = 128;
     float first = 0.0f, scale = 0.0f;  // scale 0: all centres coincide
 
     int bin(const BvhBox& box, std::size_t axis) const;
@@ -64,7 +64,7 @@ struct ObjectSplit {
     BvhBox left, right;
 };
 
-// The split of least cost over 32 bins on each axis, of a set of more than one.
+// The split of least cost over 128 bins on each axis, of a set of more than one.
 ObjectSplit find_object_split(const BvhSet& set, unsigned threads);
 
 // Divides a set in two, neither empty, where a split was found. Reorders the refs.

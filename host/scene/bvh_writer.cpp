@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
+#include "host/core/error.hpp"
 #include "host/scene/bvh_parallel.hpp"
 
 namespace stokes {
@@ -12,9 +14,10 @@ namespace stokes {
 namespace {
 
 constexpr double grid_counts = 65535.0;
+constexpr std::size_t most_nodes = std::size_t{1} << 28;
 
-// How far counts may raise the expected number of tests above that of exact boxes. Float nodes are 1.75 times
-// as large.
+// How far counts may raise the mean number of tests that follow from one. Float nodes are tested as fast but
+// 1.75 times as large; nodes of counts make up a twentieth of nodes and blocks.
 constexpr double most_count_cost = 1.15;
 
 struct GridBox {
@@ -56,28 +59,21 @@ float above<float>(double x) {
     return rounded >= x ? rounded : std::nextafter(rounded, std::numeric_limits<float>::infinity());
 }
 
-// The expected number of tests of what hangs below wide nodes, by exact boxes and by boxes rounded to counts,
-// but for a common factor.
-struct Cost {
-    double exact = 0.0, counted = 0.0;
+double half_area(const std::array<double, 3>& side) {
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
+}
 
-    void add(const BvhBox& box, const BvhGrid& grid) {
-        const GridBox on = on_grid(box, grid);
-        const std::array<double, 3> scale{grid.scale_x, grid.scale_y, grid.scale_z};
-        std::array<double, 3> side{}, counted_side{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            side[axis] = (on.hi[axis] - on.lo[axis]) / scale[axis];
-            counted_side[axis] = (above<unsigned short>(on.hi[axis]) - below<unsigned short>(on.lo[axis])) / scale[axis];
-        }
-        exact += half_area(side);
-        counted += half_area(counted_side);
+// Half areas of a box and of the box rounded to counts [mm^2].
+std::pair<double, double> half_areas(const BvhBox& box, const BvhGrid& grid) {
+    const GridBox on = on_grid(box, grid);
+    const std::array<double, 3> scale{grid.scale_x, grid.scale_y, grid.scale_z};
+    std::array<double, 3> exact{}, counted{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        exact[axis] = (on.hi[axis] - on.lo[axis]) / scale[axis];
+        counted[axis] = (above<unsigned short>(on.hi[axis]) - below<unsigned short>(on.lo[axis])) / scale[axis];
     }
-
-  private:
-    static double half_area(const std::array<double, 3>& side) {
-        return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
-    }
-};
+    return {half_area(exact), half_area(counted)};
+}
 
 // A wide node: its children, the first of them leaves, and their child words.
 struct WideNode {
@@ -173,12 +169,24 @@ void write_blocks(const WideTree& wide, const std::vector<Triangle>& triangles, 
     });
 }
 
+// By how much counts raise the tests below a node that a ray has reached, on average over all children. Rays
+// need not be spread over the scene: what is small beside it may be all that is looked at.
 BvhBounds choose_bounds(const WideTree& wide, const BvhGrid& grid) {
-    Cost cost;
-    for (const WideNode& node : wide.nodes)
-        for (const BvhTree* child : node.children)
-            if (child != nullptr) cost.add(child->box, grid);
-    return cost.counted > most_count_cost * cost.exact ? BvhBounds::floats : BvhBounds::counts;
+    double raised = 0.0, children = 0.0;
+    for (const WideNode& node : wide.nodes) {
+        double exact = 0.0, counted = 0.0, count = 0.0;
+        for (const BvhTree* child : node.children) {
+            if (child == nullptr) continue;
+            const auto [area, counted_area] = half_areas(child->box, grid);
+            exact += area;
+            counted += counted_area;
+            count += 1.0;
+        }
+        if (!(exact > 0.0)) continue;  // points and lines, which rays hardly ever meet
+        raised += count * counted / exact;
+        children += count;
+    }
+    return raised > most_count_cost * children ? BvhBounds::floats : BvhBounds::counts;
 }
 
 }  // namespace
@@ -189,6 +197,8 @@ bool write_bvh(const BvhTree& tree, const std::vector<Triangle>& triangles, unsi
     if (wide.levels > STOKES_BVH_LEVELS) return false;
     bvh.grid.root = root;
     bvh.node_count = wide.nodes.size();
+    // Packets of rays keep a node and its child in one word.
+    if (bvh.node_count > most_nodes) throw InputError("the scene's bounding volumes have more than 2^28 nodes");
     bvh.blocks.resize(wide.blocks);
     if (tree.leaf()) bvh.blocks[0] = make_block(tree, triangles);
     write_blocks(wide, triangles, threads, bvh);

@@ -28,7 +28,9 @@ class ObjParser {
             fail_index(largest_index_line_, largest_index_ + 1);
         }
         if (mesh_.triangles.empty()) throw InputError(file_ + ": no triangles");
-        if (largest_uv_ < static_cast<std::int64_t>(uvs_.size()))
+        if (largest_uv_ != no_uv && largest_uv_ >= static_cast<std::int64_t>(uvs_.size()))
+            drop_uv(largest_uv_line_, fmt::format("texture coordinate {} of {}", largest_uv_ + 1, uvs_.size()));
+        if (largest_uv_ != no_uv)
             for (const auto& t : uv_triangles_) mesh_.uv.push_back({uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]});
         return std::move(mesh_);
     }
@@ -64,7 +66,8 @@ class ObjParser {
     void read_uv() {
         const auto u = parse_double(scanner_.token()), v = parse_double(scanner_.token());
         const glm::vec2 uv(static_cast<float>(u.value_or(NAN)), 1.0f - static_cast<float>(v.value_or(NAN)));
-        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) largest_uv_ = no_uv;
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+            drop_uv(scanner_.line(), "expected two finite texture coordinates");
         uvs_.push_back(uv);
     }
 
@@ -118,12 +121,21 @@ class ObjParser {
         const auto count = static_cast<std::int64_t>(uvs_.size());
         if (!number || *number == 0 || *number < -count ||
             *number > std::numeric_limits<std::uint32_t>::max()) {
-            largest_uv_ = no_uv;
+            if (largest_uv_ != no_uv) drop_uv(scanner_.line(), "expected a texture coordinate at every corner");
             return 0;
         }
         const std::int64_t index = *number > 0 ? *number - 1 : count + *number;
-        largest_uv_ = std::max(largest_uv_, index);
+        if (index > largest_uv_) {
+            largest_uv_ = index;
+            largest_uv_line_ = scanner_.line();
+        }
         return static_cast<std::uint32_t>(index);
+    }
+
+    // The mesh is one without texture coordinates, whatever else the file has of them. The first reason is kept.
+    void drop_uv(std::int64_t line, const std::string& reason) {
+        largest_uv_ = no_uv;
+        if (mesh_.uv_fault.empty()) mesh_.uv_fault = fmt::format("{}:{}: {}", file_, line, reason);
     }
 
     static constexpr std::int64_t no_uv = std::numeric_limits<std::int64_t>::max();
@@ -133,6 +145,7 @@ class ObjParser {
     Mesh mesh_;
     std::vector<glm::vec2> uvs_;
     std::vector<std::array<std::uint32_t, 3>> uv_triangles_;  // indices of uvs_, until one is missing
+    std::int64_t largest_uv_line_ = 0;
     std::int64_t largest_uv_ = -1;                            // no_uv: the mesh has no texture coordinates
     std::int64_t largest_index_ = -1;  // a face may come before its vertices, so this is checked at the end
     std::int64_t largest_index_line_ = 0;

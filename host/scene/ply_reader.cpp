@@ -200,7 +200,11 @@ class PlyBody {
             const auto value = static_cast<float>(take(property.type));
             const bool is_uv = found - wanted >= 3;
             if (!std::isfinite(value) && !is_uv) fail("expected finite coordinates");
-            has_uv_ = has_uv_ && std::isfinite(value);
+            if (!std::isfinite(value)) {
+                has_uv_ = false;
+                mesh_.uv_fault = fmt::format("{}: vertex {}: expected finite texture coordinates", file_,
+                                             mesh_.positions_mm.size());
+            }
             values[found - wanted] = value;
         }
         mesh_.positions_mm.emplace_back(values[0], values[1], values[2]);

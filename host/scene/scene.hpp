@@ -129,6 +129,7 @@ struct Mesh {
     // Of each triangle's corners, the picture's top left corner at (0, 0), bottom right at (1, 1); empty:
     // none.
     std::vector<std::array<glm::vec2, 3>> uv = {};
+    std::string uv_fault = {};  // why the texture coordinates of its file cannot be used; empty: they can, or there are none
 };
 
 // Shapes with the same body exchange light below their surfaces: an exit point may lie on any of them.

@@ -250,8 +250,8 @@ int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform,
     if (material.texture && shape.mesh.uv.empty())
         where.fail(fmt::format(
             "the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
-            "mesh with texture coordinates",
-            material.name));
+            "mesh with texture coordinates{}",
+            material.name, shape.mesh.uv_fault.empty() ? "" : " (" + shape.mesh.uv_fault + ")"));
     const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
     const std::size_t flat = std::min(flat_before, dropped);
     if (shape.mesh.triangles.empty()) {

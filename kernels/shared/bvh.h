@@ -66,8 +66,9 @@ typedef BvhNode8 BvhNode;
 #endif
 
 // Eight triangles by their corners, structure of arrays, in order of rising triangle index: triangles that
-// share an edge see the same corners there, bit for bit, so that no ray slips between them. In unused lanes
-// the three corners coincide and triangle is STOKES_NONE. Written by the host's builder.
+// share an edge see the same corners there, bit for bit, so that no ray slips between them. A long triangle
+// may lie, whole, in several blocks. In unused lanes the three corners coincide and triangle is STOKES_NONE.
+// Written by the host's builder.
 typedef struct BvhBlock {
     float v0x[8], v0y[8], v0z[8];  // [mm]
     float v1x[8], v1y[8], v1z[8];  // [mm]

@@ -125,6 +125,7 @@ class MapBench {
           flux_(setting.device, "flux", photons_.flux),
           points_on_device_(setting.device, "points", points_),
           spectra_(setting.device, "spectra", std::vector<Flux16>{white()}),
+          textures_(setting.device, "textures", std::vector<TextureRecord>{{0, 0, 0, STOKES_NONE}}),
           pass_(setting.device, "pass", std::vector<PassConstants>{make_pass()}),
           film_(setting.device, "film", std::vector<FilmValue>(4 * points_.size(), FilmValue{0, 0, 0, 0})),
           gather_(Program(setting.device, "gather_radiance.cl").kernel("gather_radiance")) {}
@@ -170,7 +171,8 @@ class MapBench {
     void gather() {
         const auto count = static_cast<std::uint32_t>(points_.size());
         gather_.launch(count, points_on_device_, count, std::uint32_t{STOKES_MAP_SURFACE}, hash_.grid(),
-                       hash_.cell_starts(), hash_.positions(), hash_.normals(), hash_.flux(), spectra_, pass_, film_);
+                       hash_.cell_starts(), hash_.positions(), hash_.normals(), hash_.flux(), spectra_,
+                       textures_, pass_, film_);
         setting_.device.finish();
     }
 
@@ -258,6 +260,7 @@ class MapBench {
     Buffer<Flux16> flux_;
     Buffer<GatherPoint> points_on_device_;
     Buffer<Flux16> spectra_;
+    Buffer<TextureRecord> textures_;  // none
     Buffer<PassConstants> pass_;
     Buffer<FilmValue> film_;
     Kernel gather_;

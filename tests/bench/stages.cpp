@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<std::pair<std::string, std::vector<std::string>>> groups = {
     {"tracing",
-     {"emit_photons", "trace_closest", "trace_probe", "classify_photons", "camera_rays", "trace_closest_all",
+     {"emit_photons", "trace_closest", "trace_probe", "classify_photons", "camera_rays", "trace_closest_all", "trace_packets",
       "trace_seen"}},
     {"depositing",
      {"scatter_diffuse", "sample_exits", "place_exits", "deposit_exits", "retrace_fluorescence", "retrace_elastic",

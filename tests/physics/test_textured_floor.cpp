@@ -36,6 +36,7 @@ Scene checkered_floor() {
     scene.lights = {beam};
     scene.film = {8, 8, {}};
     scene.render.photons_per_pass = 60000;
+    scene.render.wavelengths = Wavelengths::uniform;  // as known_light draws them
     scene.render.radius_mm = 5.0;
     return scene;
 }
@@ -134,6 +135,7 @@ TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[
     scene.camera.target_mm = {-30.0, 40.0, 10.0};
     scene.film = {8, 8, {}};
     scene.render.photons_per_pass = 50000;
+    scene.render.wavelengths = Wavelengths::uniform;  // as known_light draws them
     scene.render.radius_mm = 12.0;
     Renderer renderer(test_device(), scene);
     PassImages images(renderer);

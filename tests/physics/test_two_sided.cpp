@@ -23,6 +23,7 @@ Scene lit_sheet(double light_side, double camera_side, bool two_sided) {
     scene.camera.position_mm.y *= camera_side;
     scene.film = {8, 8, {}};
     scene.render.photons_per_pass = 20000;
+    scene.render.wavelengths = Wavelengths::uniform;  // as known_light draws them
     scene.render.radius_mm = 6.0;
     return scene;
 }

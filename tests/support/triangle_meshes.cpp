@@ -61,6 +61,44 @@ std::vector<Triangle> triangle_soup(int count, float size_mm, const glm::vec3& s
     return triangles;
 }
 
+std::vector<Triangle> rod_mesh(const glm::vec3& from_mm, const glm::vec3& to_mm, float radius_mm, int sides,
+                               std::uint32_t body) {
+    const glm::vec3 axis = glm::normalize(to_mm - from_mm);
+    const glm::vec3 away = std::fabs(axis.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+    const glm::vec3 s = glm::normalize(glm::cross(axis, away)), t = glm::cross(axis, s);
+    const auto corner = [&](const glm::vec3& centre, int i) {
+        const double angle = 2.0 * std::acos(-1.0) * (i % sides) / sides;
+        const glm::vec3 out = static_cast<float>(std::cos(angle)) * s + static_cast<float>(std::sin(angle)) * t;
+        return glm::round(1024.0f * (centre + radius_mm * out)) / 1024.0f;
+    };
+    std::vector<Triangle> triangles;
+    for (int i = 0; i < sides; ++i) {
+        const glm::vec3 a = corner(from_mm, i), b = corner(from_mm, i + 1);
+        const glm::vec3 c = corner(to_mm, i + 1), d = corner(to_mm, i);
+        triangles.push_back(make_triangle(a, b, c, body));
+        triangles.push_back(make_triangle(a, c, d, body));
+        if (i == 0 || i + 1 == sides) continue;
+        triangles.push_back(make_triangle(corner(from_mm, 0), b, a, body));
+        triangles.push_back(make_triangle(corner(to_mm, 0), d, c, body));
+    }
+    return triangles;
+}
+
+std::vector<Triangle> rod_soup(int count, float radius_mm, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(0.0f, 100.0f);
+    const auto point = [&] {
+        const float x = unit(random), y = unit(random), z = unit(random);
+        return glm::vec3(x, y, z);
+    };
+    std::vector<Triangle> triangles;
+    for (int i = 0; i < count; ++i) {
+        const glm::vec3 from = point(), to = point();
+        append(triangles, rod_mesh(from, to, radius_mm, 6, static_cast<std::uint32_t>(i)));
+    }
+    return triangles;
+}
+
 void append(std::vector<Triangle>& all, const std::vector<Triangle>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
