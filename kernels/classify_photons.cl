@@ -36,13 +36,22 @@ FORCE_INLINE bool meets_fluorophore(__global const MaterialRecord* material, __g
     return draw.a < uptake_probability(weights, uptake_of(material, spectra));
 }
 
-// What a path does next where it meets the front of a surface at incidence cosine cos_in.
+// True where some of the light of this flux meets a fluorophore below the surface, and some need not.
+FORCE_INLINE bool has_branches(__global const MaterialRecord* material, __global const float16* spectra,
+                               float16 flux) {
+    const float c = material->fluorescent_fraction;
+    if (material->medium == STOKES_NONE || material->reradiation_row == STOKES_NONE || !(c > 0.0f)) return false;
+    return sum16(flux * spectra[material->excitation_row]) > 0.0f;
+}
+
+// What a path does next where it meets the front of a surface at incidence cosine cos_in. branches: as in EventRound.
 FORCE_INLINE uint choose_event(__global const MaterialRecord* material, __global const float16* spectra,
-                               uint transport, float cos_in, Random4 draw) {
+                               uint transport, bool branches, float cos_in, float16 flux, Random4 draw) {
     if (material->kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
     if (material->kind != STOKES_TRANSLUCENT) return STOKES_EVENT_NONE;
     if (material->exit_scale > 0.0f && draw.b < external_reflectance(cos_in, material->eta))
         return STOKES_EVENT_SPECULAR;
+    if (branches && has_branches(material, spectra, flux)) return STOKES_EVENT_BRANCHES;
     if (meets_fluorophore(material, spectra, transport, draw))
         return material->reradiation_row == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_FLUORESCENCE;
     return material->medium == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_ELASTIC;
@@ -85,7 +94,8 @@ __kernel void classify_photons(EventRound round, __global const PassConstants* p
 
     const float cos_in = min(-dot(direction, normal), 1.0f);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
-    const uint kind = cos_in > 0.0f ? choose_event(&materials[material], spectra, pass->transport, cos_in, draw)
+    const uint kind = cos_in > 0.0f ? choose_event(&materials[material], spectra, pass->transport, round.branches != 0u,
+                                                   cos_in, flux[path], draw)
                                     : STOKES_EVENT_NONE;
     if (kind == STOKES_EVENT_SPECULAR) {
         ledger->reflections += 1u;
@@ -106,21 +116,22 @@ __kernel void count_lists(uint count, uint chunk_size, __global const uchar* kin
     const uint first = chunk * chunk_size;
     if (first >= count) return;
     const uint last = min(first + chunk_size, count);
-    uint alive = 0u, diffuse = 0u, fluorescence = 0u, elastic = 0u;
+    uint alive = 0u, diffuse = 0u, fluorescence = 0u, elastic = 0u, branches = 0u;
     for (uint i = first; i < last; ++i) {
         const uint kind = (uint)kinds[i];
         alive += (uint)(kind != STOKES_EVENT_NONE);
         diffuse += (uint)(kind == STOKES_EVENT_DIFFUSE);
         fluorescence += (uint)(kind == STOKES_EVENT_FLUORESCENCE);
         elastic += (uint)(kind == STOKES_EVENT_ELASTIC);
+        branches += (uint)(kind == STOKES_EVENT_BRANCHES);
     }
-    chunk_counts[chunk] = (ListCounts){alive, diffuse, fluorescence, elastic};
+    chunk_counts[chunk] = (ListCounts){alive, diffuse, fluorescence, elastic, branches};
 }
 
 // Work-items: 1. Turns chunk_counts [chunks] into where each chunk's entries start; writes totals [1].
 __kernel void scan_lists(uint chunks, __global ListCounts* chunk_counts, __global ListCounts* totals) {
     if (get_global_id(0) != 0) return;
-    ListCounts sum = {0u, 0u, 0u, 0u};
+    ListCounts sum = {0u, 0u, 0u, 0u, 0u};
     for (uint chunk = 0u; chunk < chunks; ++chunk) {
         const ListCounts here = chunk_counts[chunk];
         chunk_counts[chunk] = sum;
@@ -128,16 +139,17 @@ __kernel void scan_lists(uint chunks, __global ListCounts* chunk_counts, __globa
         sum.diffuse += here.diffuse;
         sum.fluorescence += here.fluorescence;
         sum.elastic += here.elastic;
+        sum.branches += here.branches;
     }
     totals[0] = sum;
 }
 
 // Work-items: chunks of chunk_size list entries.
 // Reads: list, kinds [count], chunk_counts [chunks] from scan_lists.
-// Writes: the paths of each kind in list order: alive, diffuse, fluorescence, elastic.
+// Writes: the paths of each kind in list order: alive, diffuse, fluorescence, elastic, branches.
 __kernel void write_lists(uint count, uint chunk_size, __global const uint* list, __global const uchar* kinds,
                           __global const ListCounts* chunk_counts, __global uint* alive, __global uint* diffuse,
-                          __global uint* fluorescence, __global uint* elastic) {
+                          __global uint* fluorescence, __global uint* elastic, __global uint* branches) {
     const uint chunk = (uint)get_global_id(0);
     const uint first = chunk * chunk_size;
     if (first >= count) return;
@@ -154,5 +166,7 @@ __kernel void write_lists(uint count, uint chunk_size, __global const uint* list
             fluorescence[at.fluorescence++] = path;
         else if (kind == STOKES_EVENT_ELASTIC)
             elastic[at.elastic++] = path;
+        else if (kind == STOKES_EVENT_BRANCHES)
+            branches[at.branches++] = path;
     }
 }

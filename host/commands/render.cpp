@@ -35,8 +35,8 @@ extern "C" void catch_signal(int signal) {
 
 struct RenderOptions {
     std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
-    std::string reference_file, csv_file, sampling, wavelengths;
-    int passes = 0, every = 0;
+    std::string reference_file, csv_file, sampling, wavelengths, branches;
+    int passes = 0, every = 0, exits = 0;
     DeviceFlags device;
     std::int64_t photons = 0;
     std::uint32_t seed = 0;
@@ -61,9 +61,22 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--sampling")) {
         render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
         render.wavelengths.reset();
+        render.branches.reset();
+        render.exits.reset();
     }
     if (command.count("--wavelengths"))
         render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
+    if (command.count("--branches")) {
+        if (render.transport == Transport::walk)
+            throw InputError("--branches: expected transport \"paper\" or \"conserving\", got \"walk\"");
+        render.branches = static_cast<Branches>(index_of_word(options.branches, branches_words));
+    }
+    if (command.count("--exits")) {
+        if (render.transport != Transport::conserving)
+            throw InputError("--exits: expected transport \"conserving\", got \"" +
+                             transport_words[static_cast<std::size_t>(render.transport)] + "\"");
+        render.exits = options.exits;
+    }
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -88,6 +101,8 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.device", stats.device},
             {"stokes.transport", stats.transport},
             {"stokes.wavelengths", stats.wavelengths},
+            {"stokes.branches", stats.branches},
+            {"stokes.exits", stats.exits},
             {"stokes.passes", static_cast<int>(stats.passes)},
             {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
             {"stokes.seed", static_cast<double>(stats.seed)},
@@ -110,6 +125,8 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
     stats.tables = scene.render.transport != Transport::walk && scene.render.tables;
     stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
+    stats.branches = branches_words[static_cast<std::size_t>(chosen_branches(scene.render))];
+    stats.exits = chosen_exits(scene.render);
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -277,6 +294,14 @@ void add_render_command(CLI::App& app) {
                      "How a pass draws its wavelengths; default: importance, for transport paper uniform")
         ->type_name("HOW")
         ->check(word_of(wavelengths_words));
+    command
+        ->add_option("--branches", options->branches,
+                     "What a photon stores where it enters: one branch, or both; default: both with conserving")
+        ->type_name("HOW")
+        ->check(word_of(branches_words));
+    command->add_option("--exits", options->exits, "Transport conserving: exit points an entry; default 1")
+        ->type_name("N")
+        ->check(CLI::Range(1, most_exits));
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

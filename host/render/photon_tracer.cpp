@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/core/error.hpp"
+
 namespace stokes {
 
 namespace {
@@ -12,6 +14,9 @@ constexpr std::uint32_t chunk_size = 512;
 
 // Rounds of events after which the remaining paths are cut and counted. Roulette ends nearly all long before.
 constexpr std::uint32_t round_limit = 1000;
+
+// Exits are counted in 32 bits.
+constexpr std::uint64_t most_exits_at_once = 0x7fffffff;
 
 std::uint32_t chunks_of(std::uint32_t count) { return (count + chunk_size - 1) / chunk_size; }
 
@@ -29,12 +34,10 @@ PhotonTracer::PhotonTracer(const Device& device, const RayKernels& kernels, std:
       diffuse_(device, "diffuse list", paths),
       fluorescence_(device, "fluorescence list", paths),
       elastic_(device, "elastic list", paths),
+      branches_(device, "list of both branches", paths),
       kinds_(device, "photon events", paths),
       chunk_counts_(device, "list counts", chunks_of(paths)),
       totals_(device, "list totals", 1),
-      exits_(device, "subsurface exits", std::size_t{2} * paths),
-      probes_(device, "exit probes", std::size_t{2} * paths),
-      probe_hits_(device, "exit hits", std::size_t{2} * paths),
       sums_(device, "ledger sums", chunks_of(paths)) {
     emit_ = Program(device, "emit_photons.cl").kernel("emit_photons");
     const Program tracing = kernels.program(device, "trace_rays.cl");
@@ -50,9 +53,10 @@ PhotonTracer::PhotonTracer(const Device& device, const RayKernels& kernels, std:
     sample_exits_ = subsurface.kernel("sample_exits");
     place_exits_ = subsurface.kernel("place_exits");
     deposit_ = subsurface.kernel("deposit_exits");
-    retrace_fluorescence_ = subsurface.kernel("retrace_fluorescence");
-    retrace_elastic_ = subsurface.kernel("retrace_elastic");
-    retrace_exits_ = subsurface.kernel("retrace_exits");
+    const Program going_on(device, "retrace_subsurface.cl");
+    retrace_fluorescence_ = going_on.kernel("retrace_fluorescence");
+    retrace_elastic_ = going_on.kernel("retrace_elastic");
+    retrace_exits_ = going_on.kernel("retrace_exits");
     fold_exits_ = kernels.program(device, "fold_exits.cl").kernel("fold_exits");
     sum_ = Program(device, "sum_ledgers.cl").kernel("sum_ledgers");
 }
@@ -68,6 +72,8 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
         EventRound round{};
         round.event = event;
         round.last = event + 1 >= round_limit ? 1 : 0;
+        round.exits = pass.exits;
+        round.branches = pass.both_branches ? 1 : 0;
         round.count = count;
         const ListCounts lists = make_lists(scene, pass, round);
         round.count = lists.diffuse;
@@ -79,7 +85,7 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
     return close_account(photons);
 }
 
-// Sorts the arrived photons into the lists alive, diffuse, fluorescence, elastic; the rest has ended.
+// Sorts the arrived photons into the lists alive, diffuse, fluorescence, elastic, branches; the rest has ended.
 ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round) {
     const std::uint32_t count = round.count, chunks = chunks_of(count);
     classify_.launch(count, round, pass.constants, alive_, rays_, hits_, flux_, scene.triangles, scene.materials,
@@ -87,7 +93,7 @@ ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers&
     count_.launch(chunks, count, chunk_size, kinds_, chunk_counts_);
     scan_.launch(1, chunks, chunk_counts_, totals_);
     write_.launch(chunks, count, chunk_size, alive_, kinds_, chunk_counts_, next_alive_, diffuse_, fluorescence_,
-                  elastic_);
+                  elastic_, branches_);
     return totals_.download(1).front();
 }
 
@@ -106,26 +112,43 @@ void PhotonTracer::scatter_at_surfaces(const DeviceScene& scene, const PassBuffe
 
 namespace {
 
-// The exits of one list of events that go to one map.
+// The exits of an event of both branches, by the map they go to; those of fluorescence first. Events of one branch have
+// its exits alone.
 struct ExitGroup {
     std::uint32_t component, sampler;
-    bool fluorescent;  // of the list of fluorescence, else of the elastic one
 };
 
-// A list's groups follow each other, those of fluorescence first.
 std::vector<ExitGroup> exit_groups(const DeviceScene& scene) {
     const std::uint32_t paper = scene.integrated ? STOKES_SAMPLER_INTEGRATED : STOKES_SAMPLER_PAPER;
     if (scene.transport == Transport::paper)
-        return {{STOKES_MAP_FLUORESCENCE, paper, true},
-                {STOKES_MAP_SINGLE, paper, false},
-                {STOKES_MAP_MULTIPLE, paper, false}};
-    return {{STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_DIRECT, true},
-            {STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_SCATTERED, true},
-            {STOKES_MAP_SINGLE, STOKES_SAMPLER_DIRECT, false},
-            {STOKES_MAP_MULTIPLE, STOKES_SAMPLER_SCATTERED, false}};
+        return {{STOKES_MAP_FLUORESCENCE, paper}, {STOKES_MAP_SINGLE, paper}, {STOKES_MAP_MULTIPLE, paper}};
+    return {{STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_DIRECT},
+            {STOKES_MAP_FLUORESCENCE, STOKES_SAMPLER_SCATTERED},
+            {STOKES_MAP_SINGLE, STOKES_SAMPLER_DIRECT},
+            {STOKES_MAP_MULTIPLE, STOKES_SAMPLER_SCATTERED}};
 }
 
+bool fluoresces(const EventRound& round) { return round.component == STOKES_MAP_FLUORESCENCE; }
+
 }  // namespace
+
+// The list that the events of a round of exits stand in.
+const Buffer<std::uint32_t>& PhotonTracer::list_of(const EventRound& round) const {
+    return round.branches != 0 ? branches_ : fluoresces(round) ? fluorescence_ : elastic_;
+}
+
+// Room for this many exits; what is there may be lost.
+void PhotonTracer::reserve_exits(std::uint32_t count) {
+    if (count <= exits_.size()) return;
+    exits_ = {};
+    probes_ = {};
+    probe_hits_ = {};
+    powers_ = {};
+    const std::size_t room = std::size_t{count} + count / 4;
+    exits_ = Buffer<ExitPoint>(device_, "subsurface exits", room);
+    probes_ = Buffer<Probe>(device_, "exit probes", room);
+    probe_hits_ = Buffer<Hit>(device_, "exit hits", room);
+}
 
 void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
                                           const ListCounts& lists, PhotonMaps& maps) {
@@ -135,43 +158,52 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
         walk.count = lists.elastic;
         walk_below_surfaces(scene, pass, walk, maps);
     }
-    const std::vector<ExitGroup> groups = exit_groups(scene);
     std::vector<EventRound> rounds;
-    std::uint32_t exits = 0;
-    for (const ExitGroup& group : groups) {
-        EventRound r = round;
-        r.count = group.fluorescent ? lists.fluorescence : walking ? 0 : lists.elastic;
-        r.component = group.component;
-        r.sampler = group.sampler;
-        r.first_exit = exits;
-        exits += r.count;
-        rounds.push_back(r);
-    }
-    if (exits == 0) return;
+    std::uint64_t all_exits = 0;
+    for (const std::uint32_t branches : {0u, 1u})
+        for (const ExitGroup& group : exit_groups(scene)) {
+            EventRound r = round;
+            r.branches = branches;
+            r.component = group.component;
+            r.sampler = group.sampler;
+            r.count = branches != 0 ? lists.branches : fluoresces(r) ? lists.fluorescence : walking ? 0 : lists.elastic;
+            r.first_exit = static_cast<std::uint32_t>(all_exits);
+            all_exits += std::uint64_t{r.count} * r.exits;
+            rounds.push_back(r);
+        }
+    if (all_exits == 0) return;
+    if (all_exits > most_exits_at_once)
+        throw RunError("too many exit points at once: expected fewer photons or exits an entry");
+    const auto exits = static_cast<std::uint32_t>(all_exits);
+    reserve_exits(exits);
     for (const EventRound& r : rounds) sample_exits(scene, pass, r);
-    trace_probe_.launch(exits, exits, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles, probes_, probe_hits_);
+    const RayScene& rays = scene.rays;
+    trace_probe_.launch(exits, exits, rays.nodes, rays.blocks, rays.grid, scene.triangles, probes_, probe_hits_);
     place_exits_.launch(exits, exits, probes_, probe_hits_, scene.triangles, exits_);
     if (scene.transport == Transport::conserving)
-        fold_exits_.launch(exits, exits, pass.constants, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles, probes_,
+        fold_exits_.launch(exits, exits, pass.constants, rays.nodes, rays.blocks, rays.grid, scene.triangles, probes_,
                            exits_);
-    for (EventRound& r : rounds) {
-        PhotonMap& map = maps[r.component];
-        map.reserve(r.count);
-        r.first_slot = map.used();
-        r.slot_limit = map.capacity();
-        deposit_.launch(r.count, r, pass.constants, scene.materials, pass.rows, scene.tables.shapes,
-                        scene.integrated ? powers_ : scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(),
-                        map.flux());
-        deposits_ += r.count;
-        refused_slots_ += map.advance(r.count);
-    }
+    for (EventRound& r : rounds) deposit(scene, pass, r, maps[r.component]);
     probes_traced_ += exits;
     trace_on(scene, pass, rounds, maps);
 }
 
+// One group's deposits; writes its slots into the round.
+void PhotonTracer::deposit(const DeviceScene& scene, const PassBuffers& pass, EventRound& round, PhotonMap& map) {
+    const std::uint32_t slots = round.count * round.exits;
+    map.reserve(slots);
+    round.first_slot = map.used();
+    round.slot_limit = map.capacity();
+    deposit_.launch(round.count, round, pass.constants, scene.materials, pass.rows, scene.tables.shapes,
+                    scene.integrated ? powers_ : scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(),
+                    map.flux());
+    deposits_ += slots;
+    refused_slots_ += map.advance(slots);
+}
+
 // One group's exits; without power tables also what leaves there.
 void PhotonTracer::sample_exits(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round) {
-    const Buffer<std::uint32_t>& list = round.component == STOKES_MAP_FLUORESCENCE ? fluorescence_ : elastic_;
+    const Buffer<std::uint32_t>& list = list_of(round);
     if (!scene.integrated) {
         sample_exits_.launch(round.count, round, pass.constants, list, points_, rays_, scene.materials, pass.rows,
                              scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, exits_,
@@ -182,8 +214,8 @@ void PhotonTracer::sample_exits(const DeviceScene& scene, const PassBuffers& pas
         const Program program(device_, "integrate_power.cl");
         draw_exits_.emplace(program.kernel("draw_exits"));
         integrate_.emplace(program.kernel("integrate_power"));
-        powers_ = Buffer<Flux16>(device_, "powers at exits", exits_.size());
     }
+    if (powers_.size() < exits_.size()) powers_ = Buffer<Flux16>(device_, "powers at exits", exits_.size());
     draw_exits_->launch(round.count, round, pass.constants, list, points_, rays_, scene.materials,
                         scene.integrated->mixtures, scene.integrated->mixture_rows, exits_, probes_);
     integrate_->launch(round.count, round, exits_, scene.materials, scene.integrated->at_wavelengths, powers_);
@@ -209,26 +241,47 @@ void PhotonTracer::walk_below_surfaces(const DeviceScene& scene, const PassBuffe
     refused_slots_ += refused;
 }
 
+namespace {
+
+ExitGroups groups_of(const std::vector<EventRound>& rounds, std::size_t first, std::uint32_t count) {
+    ExitGroups groups{};
+    groups.count = count;
+    for (std::uint32_t g = 0; g < count; ++g) {
+        const EventRound& round = rounds[first + g];
+        groups.component[g] = round.component;
+        groups.first_exit[g] = round.first_exit;
+        groups.first_slot[g] = round.first_slot;
+        groups.slot_limit[g] = round.slot_limit;
+    }
+    return groups;
+}
+
+}  // namespace
+
 // Sends on what left: rounds as scatter_below_surfaces made them.
-void PhotonTracer::trace_on(const DeviceScene& scene, const PassBuffers& pass, std::vector<EventRound> rounds,
+void PhotonTracer::trace_on(const DeviceScene& scene, const PassBuffers& pass, const std::vector<EventRound>& rounds,
                             const PhotonMaps& maps) {
-    const auto pair = [&](std::size_t first, std::size_t second) {
-        EventRound r = rounds[first];
-        r.second_exit = rounds[second].first_exit;
-        r.second_slot = rounds[second].first_slot;
-        r.second_limit = rounds[second].slot_limit;
-        return r;
-    };
     if (scene.transport == Transport::paper) {
-        retrace_fluorescence_.launch(rounds[0].count, rounds[0], pass.constants, exits_, scene.materials, pass.rows,
-                                     maps[STOKES_MAP_FLUORESCENCE].flux(), rays_, flux_, ledgers_);
-        retrace_elastic_.launch(rounds[1].count, pair(1, 2), pass.constants, exits_, rays_, flux_, ledgers_);
+        for (const std::size_t first : {std::size_t{0}, std::size_t{3}}) {  // of one branch, of both
+            const EventRound& fluorescence = rounds[first];
+            EventRound elastic = rounds[first + 1];
+            elastic.second_exit = rounds[first + 2].first_exit;
+            retrace_fluorescence_.launch(fluorescence.count, fluorescence, pass.constants, exits_, scene.materials,
+                                         pass.rows, maps[STOKES_MAP_FLUORESCENCE].flux(), rays_, flux_, ledgers_);
+            retrace_elastic_.launch(elastic.count, elastic, pass.constants, exits_, scene.materials, rays_, flux_,
+                                    ledgers_);
+        }
         return;
     }
-    for (const std::size_t first : {std::size_t{0}, std::size_t{2}})
-        retrace_exits_.launch(rounds[first].count, pair(first, first + 1), pass.constants, exits_, scene.materials,
-                              maps[rounds[first].component].flux(), maps[rounds[first + 1].component].flux(), rays_,
-                              flux_, ledgers_);
+    const auto retrace = [&](std::size_t first, std::uint32_t groups) {
+        const EventRound& round = rounds[first];
+        retrace_exits_.launch(round.count, round, groups_of(rounds, first, groups), pass.constants, exits_,
+                              scene.materials, maps[STOKES_MAP_FLUORESCENCE].flux(), maps[STOKES_MAP_SINGLE].flux(),
+                              maps[STOKES_MAP_MULTIPLE].flux(), rays_, flux_, ledgers_);
+    };
+    retrace(0, 2);  // fluorescence
+    retrace(2, 2);  // elastic
+    retrace(4, 4);  // both branches
 }
 
 PhotonAccount PhotonTracer::close_account(std::uint32_t photons) {

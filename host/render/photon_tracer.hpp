@@ -20,6 +20,8 @@ struct PassBuffers {
     Buffer<Flux16> rows;
     Buffer<Flux16> photon_flux;  // [lights]
     Buffer<Flux16> radiance;     // [lights]
+    bool both_branches = false;  // light below a surface goes both ways, by fluorophore and past it: chosen_branches()
+    std::uint32_t exits = 1;     // of an event and component
 };
 
 using PhotonMaps = std::array<PhotonMap, STOKES_MAP_COUNT>;  // by STOKES_MAP_*
@@ -50,9 +52,12 @@ class PhotonTracer {
                              PhotonMap& map);
     void scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
                                 const ListCounts& lists, PhotonMaps& maps);
+    void reserve_exits(std::uint32_t count);
+    const Buffer<std::uint32_t>& list_of(const EventRound& round) const;
     void sample_exits(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);
+    void deposit(const DeviceScene& scene, const PassBuffers& pass, EventRound& round, PhotonMap& map);
     void walk_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round, PhotonMaps& maps);
-    void trace_on(const DeviceScene& scene, const PassBuffers& pass, std::vector<EventRound> rounds,
+    void trace_on(const DeviceScene& scene, const PassBuffers& pass, const std::vector<EventRound>& rounds,
                   const PhotonMaps& maps);
     PhotonAccount close_account(std::uint32_t photons);
 
@@ -65,7 +70,7 @@ class PhotonTracer {
     Buffer<Flux16> flux_;
     Buffer<PathLedger> ledgers_;
     Buffer<SurfacePoint> points_;
-    Buffer<std::uint32_t> alive_, next_alive_, diffuse_, fluorescence_, elastic_;
+    Buffer<std::uint32_t> alive_, next_alive_, diffuse_, fluorescence_, elastic_, branches_;
     Buffer<std::uint8_t> kinds_;
     Buffer<ListCounts> chunk_counts_, totals_;
     Buffer<ExitPoint> exits_;

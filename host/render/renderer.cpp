@@ -55,13 +55,17 @@ PhotonMaps Renderer::make_maps() {
 
 // By a trial pass that leaves nothing in the film. Its photons have the same flux at every wavelength: a lamp of few
 // wavelengths might be dark at all of those that were drawn. The camera sees the whole picture: a crop has its radius.
+// What one photon stores in several places at once counts as one: it is no more light that found its own way.
 double Renderer::find_first_radius() {
     pass_.make(trial_pass, photons_);
     Flux16 even;
     std::fill(std::begin(even.v), std::end(even.v), 1.0f);
     pass_.buffers().photon_flux.upload(std::vector<Flux16>(scene_.lights.size(), even));
     for (PhotonMap& map : maps_) map.clear();
-    tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
+    PassBuffers plain = pass_.buffers();
+    plain.both_branches = false;
+    plain.exits = 1;
+    tracer_.trace(on_device_, plain, photons_, maps_);
     const CameraRecord whole = make_whole_record(scene_.camera, scene_.film.width, scene_.film.height);
     see_points(whole);
     std::vector<PhotonHead> photons;

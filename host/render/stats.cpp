@@ -48,6 +48,8 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("transport", json_quoted(s.transport));
     add("tables", s.tables ? "true" : "false");
     add("wavelengths", json_quoted(s.wavelengths));
+    add("branches", json_quoted(s.branches));
+    add("exits", std::to_string(s.exits));
     add("passes", number(std::uint64_t{s.passes}));
     add("seed", number(std::uint64_t{s.seed}));
     add("width", std::to_string(s.width));

@@ -43,11 +43,17 @@ inline const std::vector<std::string> transport_words = {"paper", "conserving", 
 enum class Wavelengths { uniform, importance };
 inline const std::vector<std::string> wavelengths_words = {"uniform", "importance"};
 
+// Which light is stored where a photon enters a translucent material: that of the branch that was drawn, fluorescence
+// or elastic scattering, or that of both. As scene files and the command line spell them, in order.
+enum class Branches { roulette, both };
+inline const std::vector<std::string> branches_words = {"roulette", "both"};
+
 // Which samplers a render has where it does not name them one by one: the plain ones, or those with the least noise.
 enum class Sampling { plain, best };
 inline const std::vector<std::string> sampling_words = {"plain", "best"};
 
 inline constexpr std::int64_t most_photons_per_pass = 0x10000000;
+inline constexpr int most_exits = 64;
 
 struct RenderSettings {
     int passes = 64;
@@ -62,12 +68,25 @@ struct RenderSettings {
     bool first_collision_only = false;  // walk: fluorophores take light up at its first collision only
     Sampling sampling = Sampling::best;
     std::optional<Wavelengths> wavelengths;  // none: by sampling and transport
+    std::optional<Branches> branches;        // none: by sampling and transport; void for walk
+    std::optional<int> exits;                // conserving: exit points an entry and component; none: by sampling
 };
 
 // By importance, unless plain samplers are asked for, or the model `paper`, whose wavelengths are uniform.
 inline Wavelengths chosen_wavelengths(const RenderSettings& render) {
     const bool plain = render.sampling == Sampling::plain || render.transport == Transport::paper;
     return render.wavelengths.value_or(plain ? Wavelengths::uniform : Wavelengths::importance);
+}
+
+// Both with the model `conserving`, unless plain samplers are asked for.
+inline Branches chosen_branches(const RenderSettings& render) {
+    const bool plain = render.sampling == Sampling::plain || render.transport != Transport::conserving;
+    return render.branches.value_or(plain ? Branches::roulette : Branches::both);
+}
+
+// One but for the model `conserving`.
+inline int chosen_exits(const RenderSettings& render) {
+    return render.transport == Transport::conserving ? render.exits.value_or(1) : 1;
 }
 
 // sigma_s and sigma_a [1/mm] with the scene's scale factors already applied.

@@ -27,6 +27,9 @@ RenderSettings read_render_settings(const JsonCursor& render) {
         s.sampling = static_cast<Sampling>(sampling->choice(sampling_words));
     if (const auto wavelengths = render.find("wavelengths"))
         s.wavelengths = static_cast<Wavelengths>(wavelengths->choice(wavelengths_words));
+    if (const auto branches = render.find("branches"))
+        s.branches = static_cast<Branches>(branches->choice(branches_words));
+    if (const auto exits = render.find("exits")) s.exits = static_cast<int>(exits->integer(1, most_exits));
     if (s.lambda_max_nm - s.lambda_min_nm + 1 < wavelengths_per_pass) {
         render.fail(fmt::format(
             "expected at least {} whole wavelengths from lambda_min_nm to lambda_max_nm, got {} to {}",

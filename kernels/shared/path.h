@@ -23,6 +23,7 @@
 #define STOKES_EVENT_FLUORESCENCE 2u
 #define STOKES_EVENT_ELASTIC 3u   // model `walk`: everything that happens below a surface
 #define STOKES_EVENT_SPECULAR 4u  // reflected at a smooth surface; only the ray changes
+#define STOKES_EVENT_BRANCHES 5u  // fluorescence and elastic, each with its weight; the path goes on along one of them
 
 // Sums over a pass's 16 wavelengths.
 typedef struct LightSum {
@@ -91,8 +92,9 @@ typedef struct ExitPoint {
     unsigned int path;
     unsigned int material;
     float way_mm;        // to the first collision, along the refracted ray
-    float scale;         // factor on what leaves: PAPER 1, DIRECT 1/density of the direction, SCATTERED 1/density of r
-    LightSum kept;         // the deposited flux
+    float scale;         // factor on what leaves: PAPER 1, DIRECT 1/density of the direction, SCATTERED 1/density of r,
+                         // both over the number of exits
+    LightSum kept;         // the deposited flux; PAPER: before the branch's weight
     LightSum event_light;  // PAPER: re-emitted as fluorescence; DIRECT: what the first collision sends on; SCATTERED:
                            // what it takes up
 } ExitPoint;
@@ -104,16 +106,28 @@ typedef struct EventRound {
     unsigned int event;      // index of the round, from 0
     unsigned int component;  // STOKES_MAP_*: which map is being written
     unsigned int sampler;    // STOKES_SAMPLER_*
-    unsigned int first_exit;    // first of the component's exits in the exit buffer
-    unsigned int first_slot;    // first free slot of the component's map
-    unsigned int slot_limit;    // capacity of the map
-    unsigned int second_exit;   // the other exits of the same events: first of them in the exit buffer,
-    unsigned int second_slot;   // in their map,
-    unsigned int second_limit;  // and the capacity of that map
-    unsigned int last;          // 1: paths that would go on are cut and counted
+    unsigned int first_exit;   // first of the component's exits in the exit buffer; those of an event stand together
+    unsigned int first_slot;   // first free slot of the component's map
+    unsigned int slot_limit;   // capacity of the map
+    unsigned int second_exit;  // retrace_elastic: first of the multiple-scattering exits in the exit buffer
+    unsigned int last;         // 1: paths that would go on are cut and counted
+    unsigned int exits;        // exits of an event and component, at least 1
+    unsigned int branches;     // 1: the events are STOKES_EVENT_BRANCHES, or translucent ones may become that
     unsigned int pad;
 } EventRound;
 STOKES_ASSERT_SIZE(EventRound, 48);
+
+// Where the exits of a list of events stand, in groups of one component each: direct and scattered ones of a branch,
+// and with STOKES_EVENT_BRANCHES those of the other branch. Passed by value.
+typedef struct ExitGroups {
+    unsigned int count;  // 2 or 4
+    unsigned int component[4];   // STOKES_MAP_*
+    unsigned int first_exit[4];  // as in EventRound
+    unsigned int first_slot[4];
+    unsigned int slot_limit[4];
+    unsigned int pad[3];
+} ExitGroups;
+STOKES_ASSERT_SIZE(ExitGroups, 80);
 
 // Where walk_photons stores, by map STOKES_MAP_*: F, S and M. Passed by value.
 typedef struct WalkSlots {
@@ -125,8 +139,8 @@ STOKES_ASSERT_SIZE(WalkSlots, 32);
 
 // Read back by the host once a round. Written by scan_lists.
 typedef struct ListCounts {
-    unsigned int alive, diffuse, fluorescence, elastic;
+    unsigned int alive, diffuse, fluorescence, elastic, branches;
 } ListCounts;
-STOKES_ASSERT_SIZE(ListCounts, 16);
+STOKES_ASSERT_SIZE(ListCounts, 20);
 
 #endif

@@ -61,6 +61,8 @@ TEST_CASE("A scene's settings, media and materials arrive as written") {
     CHECK(scene.render.photons_per_pass == 1000);
     CHECK(scene.render.alpha == 0.5);
     CHECK(scene.render.sampling == Sampling::best);
+    CHECK_FALSE(scene.render.branches);
+    CHECK_FALSE(scene.render.exits);
     CHECK_FALSE(scene.render.wavelengths);
     CHECK(scene.render.radius_mm == 2.0);
     CHECK(scene.render.seed == 9);
@@ -94,6 +96,27 @@ TEST_CASE("A scene names its transport, or gets the one that conserves energy") 
     CHECK(scene_with("\"paper\"", "\"conserving\"").render.transport == Transport::conserving);
     CHECK(scene_with("\"paper\"", "\"walk\"").render.transport == Transport::walk);
     CHECK(scene_with(", \"transport\": \"paper\"", "").render.transport == Transport::conserving);
+}
+
+TEST_CASE("Branches and exits are as the scene says, or by its sampling and transport") {
+    const auto render = [](const std::string& settings) {
+        return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;
+    };
+    RenderSettings none = render("");
+    none.transport = Transport::conserving;
+    CHECK(chosen_branches(none) == Branches::both);
+    CHECK(chosen_exits(none) == 1);
+    none.transport = Transport::paper;
+    CHECK(chosen_branches(none) == Branches::roulette);
+    CHECK(chosen_branches(render(R"(, "sampling": "plain")")) == Branches::roulette);
+    RenderSettings given = render(R"(, "sampling": "plain", "branches": "both", "exits": 5)");
+    CHECK(chosen_branches(given) == Branches::both);
+    given.transport = Transport::conserving;
+    CHECK(chosen_exits(given) == 5);
+    given.transport = Transport::paper;
+    CHECK(chosen_branches(given) == Branches::both);
+    CHECK(chosen_exits(given) == 1);  // of the distance, which is drawn without weights
+    CHECK(chosen_branches(render(R"(, "branches": "roulette")")) == Branches::roulette);
 }
 
 TEST_CASE("A surface reflects where the scene says so") {

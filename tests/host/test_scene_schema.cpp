@@ -88,6 +88,8 @@ TEST_CASE("The schema has the reader's limits") {
         CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
     CHECK(property("material_diffuse", "reflectance").at("$ref") == "#/$defs/reflectance");
     CHECK(schema.at("$defs").at("reflectance").at("oneOf").at(0).at("$ref") == "#/$defs/spectrum_up_to_1");
+    CHECK(property("render", "branches").at("enum") == branches_words);
+    CHECK(property("render", "exits").at("maximum") == most_exits);
     CHECK(property("scene", "transport").at("enum") == transport_words);
     CHECK(property("scene", "transport").at("default") ==
           transport_words[static_cast<std::size_t>(RenderSettings().transport)]);

@@ -19,6 +19,8 @@ RenderStats example() {
     stats.transport = "walk";
     stats.tables = false;
     stats.wavelengths = "importance";
+    stats.branches = "both";
+    stats.exits = 3;
     stats.passes = 12;
     stats.seed = 4000000000u;
     stats.width = 640;
@@ -61,6 +63,8 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     CHECK(json.at("ray_kernel") == "avx2");
     CHECK(json.at("tables") == false);
     CHECK(json.at("wavelengths") == "importance");
+    CHECK(json.at("branches") == "both");
+    CHECK(json.at("exits") == 3);
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
     CHECK(json.at("photons_emitted") == 12000000000ull);

@@ -28,6 +28,13 @@ MaterialRecord translucent(float c, bool subsurface, bool fluorescent) {
             0};
 }
 
+// The pass's spectra as far as they are read: row 8 is the fluorophore's excitation.
+std::vector<Flux16> spectra() {
+    std::vector<Flux16> rows(9, constant_flux(0.0f));
+    rows[8] = constant_flux(0.5f);
+    return rows;
+}
+
 // Black, diffuse, and translucent of every sort.
 std::vector<MaterialRecord> materials() {
     return {{STOKES_BLACK, STOKES_NONE, 0.0f, 1.0f, STOKES_NONE, STOKES_NONE, 0, 0},
@@ -89,18 +96,19 @@ struct Classified {
     std::vector<PathLedger> ledgers;
 };
 
-Classified classify(const Arrivals& a, std::uint32_t event = 0) {
+Classified classify(const Arrivals& a, std::uint32_t event = 0, std::uint32_t branches = 0) {
     const Buffer<SurfacePoint> points(test_device(), "points", a.rays.size());
     const Buffer<PathLedger> ledgers = on_device(a.ledgers);
     const Buffer<std::uint8_t> kinds(test_device(), "kinds", a.list.size());
     EventRound round{};
     round.count = std::uint32_t(a.list.size());
     round.event = event;
+    round.branches = branches;
     Program(test_device(), "classify_photons.cl")
         .kernel("classify_photons")
         .launch(a.list.size(), round, pass_on_device(seed), on_device(a.list),
                 on_device(a.rays), on_device(a.hits), on_device(a.flux), on_device(a.triangles),
-                on_device(materials()), on_device(a.shapes), on_device(std::vector<Flux16>(1)), points, ledgers, kinds);
+                on_device(materials()), on_device(a.shapes), on_device(spectra()), points, ledgers, kinds);
     return {kinds.download(), points.download(), ledgers.download()};
 }
 
@@ -114,9 +122,11 @@ std::vector<float> branch_draws(std::uint32_t paths) {
     return draws;
 }
 
-std::uint32_t expected_event(const MaterialRecord& m, float draw) {
+std::uint32_t expected_event(const MaterialRecord& m, float draw, bool branches) {
     if (m.kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
     if (m.kind == STOKES_BLACK) return STOKES_EVENT_NONE;
+    if (branches && m.medium != STOKES_NONE && m.reradiation_row != STOKES_NONE && m.fluorescent_fraction > 0.0f)
+        return STOKES_EVENT_BRANCHES;
     const bool meets_fluorophore = draw < m.fluorescent_fraction;
     if (meets_fluorophore)
         return m.reradiation_row == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_FLUORESCENCE;
@@ -124,7 +134,7 @@ std::uint32_t expected_event(const MaterialRecord& m, float draw) {
 }
 
 void check_arrival(const Arrivals& a, const Classified& result, std::size_t entry,
-                   const std::vector<float>& draws) {
+                   const std::vector<float>& draws, bool branches = false) {
     const std::uint32_t path = a.list[entry];
     const PathLedger &before = a.ledgers[path], &after = result.ledgers[path];
     CAPTURE(entry, path);
@@ -157,7 +167,7 @@ void check_arrival(const Arrivals& a, const Classified& result, std::size_t entr
     const double facing = glm::dot(direction_of(a.rays[path]), normal_of(t));
     if (std::abs(facing) < 1e-5) return;
     const std::uint32_t event =
-        facing < 0.0 ? expected_event(materials()[material], draws[path]) : STOKES_EVENT_NONE;
+        facing < 0.0 ? expected_event(materials()[material], draws[path], branches) : STOKES_EVENT_NONE;
     CHECK(result.kinds[entry] == event);
     CHECK(after.fate == (event == STOKES_EVENT_NONE ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE));
     CHECK(static_cast<double>(after.absorbed.energy) ==
@@ -181,7 +191,7 @@ std::vector<std::uint8_t> events_at(std::uint32_t material, std::uint32_t event)
 
 struct Lists {
     ListCounts totals;
-    std::vector<std::uint32_t> alive, diffuse, fluorescence, elastic;
+    std::vector<std::uint32_t> alive, diffuse, fluorescence, elastic, branches;
 };
 
 constexpr std::uint32_t untouched = 0xabababab;
@@ -193,15 +203,17 @@ Lists make_lists(const std::vector<std::uint32_t>& list, const std::vector<std::
     const Buffer<ListCounts> counts(test_device(), "counts", chunks), totals(test_device(), "totals", 1);
     const std::vector<std::uint32_t> blank(count + 3, untouched);
     const Buffer<std::uint32_t> paths = on_device(list), alive = on_device(blank), diffuse = on_device(blank),
-                                fluorescence = on_device(blank), elastic = on_device(blank);
+                                fluorescence = on_device(blank), elastic = on_device(blank),
+                                branches = on_device(blank);
     const Buffer<std::uint8_t> of = on_device(kinds);
     const Program program(test_device(), "classify_photons.cl");
     program.kernel("count_lists").launch(chunks, count, chunk_size, of, counts);
     program.kernel("scan_lists").launch(1, chunks, counts, totals);
     program.kernel("write_lists")
-        .launch(chunks, count, chunk_size, paths, of, counts, alive, diffuse, fluorescence, elastic);
+        .launch(chunks, count, chunk_size, paths, of, counts, alive, diffuse, fluorescence, elastic,
+                branches);
     return {totals.download().front(), alive.download(), diffuse.download(), fluorescence.download(),
-            elastic.download()};
+            elastic.download(), branches.download()};
 }
 
 // The paths of the kinds that count, in the order of the list, then nothing but what stood there.
@@ -220,10 +232,11 @@ void check_lists(const std::vector<std::uint32_t>& list, const std::vector<std::
                  std::uint32_t chunk_size) {
     CAPTURE(list.size(), chunk_size);
     const Lists lists = make_lists(list, kinds, chunk_size);
-    check_list(lists.alive, lists.totals.alive, list, kinds, {1, 2, 3, 4});
+    check_list(lists.alive, lists.totals.alive, list, kinds, {1, 2, 3, 4, 5});
     check_list(lists.diffuse, lists.totals.diffuse, list, kinds, {STOKES_EVENT_DIFFUSE});
     check_list(lists.fluorescence, lists.totals.fluorescence, list, kinds, {STOKES_EVENT_FLUORESCENCE});
     check_list(lists.elastic, lists.totals.elastic, list, kinds, {STOKES_EVENT_ELASTIC});
+    check_list(lists.branches, lists.totals.branches, list, kinds, {STOKES_EVENT_BRANCHES});
 }
 
 }  // namespace
@@ -236,6 +249,20 @@ TEST_CASE("photons are classified as the rules say, path by path", "[classify_ph
     for (std::size_t path = 0; path < a.ledgers.size(); ++path)  // paths that are not in the list
         if (std::count(a.list.begin(), a.list.end(), path) == 0)
             CHECK(std::memcmp(&a.ledgers[path], &result.ledgers[path], sizeof(PathLedger)) == 0);
+}
+
+// Both branches are there where some light can be taken up below a surface; elsewhere the rules are the same.
+TEST_CASE("light below a fluorescent surface goes both ways where that is asked for", "[classify_photons][tiny]") {
+    const Arrivals a = random_arrivals(300, 5);
+    const Classified result = classify(a, 0, 1);
+    const std::vector<float> draws = branch_draws(300);
+    for (std::size_t entry = 0; entry < a.list.size(); ++entry) check_arrival(a, result, entry, draws, true);
+    CHECK(std::count(result.kinds.begin(), result.kinds.end(), STOKES_EVENT_BRANCHES) > 10);
+
+    Arrivals dark = random_arrivals(300, 6);  // at wavelengths that excite nothing
+    for (Flux16& flux : dark.flux)
+        if (std::isfinite(sum_of(flux))) flux = constant_flux(0.0f);
+    for (const std::uint8_t kind : classify(dark, 0, 1).kinds) CHECK(kind != STOKES_EVENT_BRANCHES);
 }
 
 TEST_CASE("many photons are classified as the rules say", "[classify_photons]") {
@@ -283,9 +310,9 @@ TEST_CASE("the lists hold the paths of their kind in list order", "[classify_pho
         std::vector<std::uint8_t> kinds(count);
         std::iota(list.begin(), list.end(), 1000u);
         std::shuffle(list.begin(), list.end(), generator);
-        for (std::uint8_t& kind : kinds) kind = std::uint8_t(generator() % 5);
+        for (std::uint8_t& kind : kinds) kind = std::uint8_t(generator() % 6);
         check_lists(list, kinds, 16);
-        for (const int only : {0, 1, 2, 3, 4})
+        for (const int only : {0, 1, 2, 3, 4, 5})
             check_lists(list, std::vector<std::uint8_t>(count, std::uint8_t(only)), 16);
     }
 }
@@ -295,6 +322,6 @@ TEST_CASE("long lists are the same for every chunk size", "[classify_photons]") 
     std::vector<std::uint32_t> list(50001);
     std::vector<std::uint8_t> kinds(list.size());
     std::iota(list.begin(), list.end(), 0u);
-    for (std::uint8_t& kind : kinds) kind = std::uint8_t(generator() % 5);
+    for (std::uint8_t& kind : kinds) kind = std::uint8_t(generator() % 6);
     for (const std::uint32_t chunk_size : {1u, 512u, 50000u, 60000u}) check_lists(list, kinds, chunk_size);
 }

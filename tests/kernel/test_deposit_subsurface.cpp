@@ -42,6 +42,7 @@ EventRound round_of(std::uint32_t component, std::size_t count) {
     round.event = 2;
     round.component = component;
     round.first_exit = before;
+    round.exits = 1;
     return round;
 }
 
@@ -58,7 +59,7 @@ Exits sample(const SubsurfaceArrivals& a, const std::vector<std::uint32_t>& list
     blank_exit.path = empty;
     Probe blank_probe{};
     blank_probe.body = empty;
-    const std::size_t room = before + list.size() + after;
+    const std::size_t room = before + list.size() * round.exits + after;
     const Buffer<ExitPoint> exits = on_device(std::vector<ExitPoint>(room, blank_exit));
     const Buffer<Probe> probes = on_device(std::vector<Probe>(room, blank_probe));
     Program(test_device(), "deposit_subsurface.cl")
@@ -150,9 +151,10 @@ constexpr std::uint32_t first_slot = 6;
 Deposits deposit(const SubsurfaceArrivals& a, const std::vector<ExitPoint>& given, std::size_t count,
                  std::uint32_t component, std::uint32_t slot_limit, std::size_t slots,
                  std::uint32_t sampler = STOKES_SAMPLER_PAPER,
-                 const std::vector<MaterialRecord>& materials = translucent_materials()) {
+                 const std::vector<MaterialRecord>& materials = translucent_materials(), std::uint32_t branches = 0) {
     const MadeUpTables tables;
     EventRound round = round_of(component, count);
+    round.branches = branches;
     round.sampler = sampler;
     round.first_slot = first_slot;
     round.slot_limit = slot_limit;
@@ -337,6 +339,50 @@ TEST_CASE("conserving exits lie about the foot of the first collision", "[deposi
         }
 }
 
+// Several exits of an event: the cosine of a direct exit, which is uniform, runs through all strata, azimuths are a
+// golden ratio of a turn apart, and the first exit is the one of an event with one exit.
+TEST_CASE("several exits of an event are stratified", "[deposit_subsurface][tiny]") {
+    const SubsurfaceArrivals a(120);
+    const std::vector<MaterialRecord> materials = conserving_materials(0.0f);
+    EventRound round = round_of(STOKES_MAP_SINGLE, a.elastic.size());
+    round.sampler = STOKES_SAMPLER_DIRECT;
+    const Exits one = sample(a, a.elastic, round, materials);
+    for (const std::uint32_t count : {2u, 3u, 8u}) {
+        round.exits = count;
+        const Exits several = sample(a, a.elastic, round, materials);
+        std::size_t open = 0;
+        for (std::size_t i = 0; i < a.elastic.size(); ++i) {
+            const ExitPoint* exits = &several.exits[before + i * count];
+            const Probe* probes = &several.probes[before + i * count];
+            const SurfacePoint& p = a.points[a.elastic[i]];
+            const glm::dvec3 n(p.nx, p.ny, p.nz), entry(p.x, p.y, p.z), d = direction_of(a.rays[a.elastic[i]]);
+            const double eta = double(materials[p.material].eta), cos_in = -glm::dot(d, n),
+                         way = double(exits[0].way_mm);
+            const double depth = way * std::sqrt(1.0 - (1.0 - cos_in * cos_in) / (eta * eta));
+            const glm::dvec3 foot = entry + (d + cos_in * n) / eta * way;
+            CAPTURE(count, i);
+            CHECK(exits[0].r_mm == one.exits[before + i].r_mm);
+            CHECK(probes[0].x == one.probes[before + i].x);
+            const auto turn = [&](const Probe& probe) {
+                return azimuth_about(n, glm::dvec3(probe.x, probe.y, probe.z) - foot);
+            };
+            for (std::uint32_t k = 0; k < count; ++k) {
+                CHECK(exits[k].path == a.elastic[i]);
+                CHECK(exits[k].way_mm == exits[0].way_mm);
+                if (exits[k].scale == 0.0f || exits[0].scale == 0.0f || depth < 0.05) continue;
+                ++open;
+                CHECK(double(exits[k].scale) == Approx(0.5 / count));
+                const double apart = depth / double(exits[k].row) - depth / double(exits[0].row) - double(k) / count;
+                CHECK(std::abs(apart - std::round(apart)) < 1e-3);
+                if (exits[k].r_mm < 0.05f || exits[0].r_mm < 0.05f) continue;
+                double turned = turn(probes[k]) - turn(probes[0]) - 0.61803398875 * k;
+                CHECK(std::abs(turned - std::round(turned)) < 2e-3);
+            }
+        }
+        CHECK(open > 30);
+    }
+}
+
 TEST_CASE("exits are put where their probe hit, others are marked and keep their distance",
           "[deposit_subsurface][tiny]") {
     const std::vector<Triangle> triangles = {make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
@@ -386,8 +432,36 @@ TEST_CASE("many deposits are those of eq. 1-5", "[deposit_subsurface]") {
     for (const std::uint32_t component : components) check_deposits(a, component);
 }
 
-// PHYSICS section 4 in double precision; some tens of roundings, and those of exp.
+// STEP 1 of model `paper` without a draw: c and 1 - c of each branch's deposits; what the paths go on with is the same.
+TEST_CASE("both branches of the paper's model are stored with their weights", "[deposit_subsurface][tiny]") {
+    const SubsurfaceArrivals a(90);
+    for (const std::uint32_t component : components) {
+        const auto& list = component == STOKES_MAP_FLUORESCENCE ? a.fluorescence : a.elastic;
+        const std::vector<ExitPoint> given = given_exits(a, list, component);
+        const std::size_t end = first_slot + list.size();
+        const auto stored = [&](std::uint32_t branches) {
+            return deposit(a, given, list.size(), component, std::uint32_t(end), end, STOKES_SAMPLER_PAPER,
+                           translucent_materials(), branches);
+        };
+        const Deposits drawn = stored(0), both = stored(1);
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const double c = double(translucent_materials()[given[before + i].material].fluorescent_fraction);
+            const double share = component == STOKES_MAP_FLUORESCENCE ? c : 1.0 - c;
+            for (std::size_t k = 0; k < 16; ++k)
+                CHECK(double(both.flux[first_slot + i].v[k]) ==
+                      Approx(share * double(drawn.flux[first_slot + i].v[k])).epsilon(1e-6));
+            CHECK(double(both.ledgers[list[i]].stored.energy) ==
+                  Approx(share * double(drawn.ledgers[list[i]].stored.energy)).epsilon(1e-6));
+            CHECK(both.exits[before + i].kept.energy == drawn.exits[before + i].kept.energy);
+            CHECK(both.heads[first_slot + i].normal == drawn.heads[first_slot + i].normal);
+        }
+    }
+}
+
+// PHYSICS section 4 in double precision; some tens of roundings, and those of exp. Where a branch was drawn, each
+// wavelength has its own probability of that branch over that of the draw; where both are stored, its own alone.
 TEST_CASE("conserving deposits are those of the first collision and its way out", "[deposit_subsurface][tiny]") {
+    const std::uint32_t branches = GENERATE(0u, 1u);
     const SubsurfaceArrivals a(90);
     const std::vector<MaterialRecord> materials = conserving_materials(0.0f);
     const std::vector<Flux16> spectra = conserving_spectra();
@@ -404,7 +478,8 @@ TEST_CASE("conserving deposits are those of the first collision and its way out"
                 given[before + i].row *= sampler == STOKES_SAMPLER_DIRECT ? 0.02f : 1.0f;
             }
             const std::size_t end = first_slot + list.size();
-            const Deposits d = deposit(a, given, list.size(), component, std::uint32_t(end), end, sampler, materials);
+            const Deposits d = deposit(a, given, list.size(), component, std::uint32_t(end), end, sampler, materials,
+                                       branches);
             for (std::size_t i = 0; i < list.size(); ++i) {
                 const ExitPoint& exit_point = d.exits[before + i];
                 const MaterialRecord& material = materials[exit_point.material];
@@ -419,9 +494,10 @@ TEST_CASE("conserving deposits are those of the first collision and its way out"
                                 double(spectra[material.excitation_row].v[k]);
                 }
                 for (std::size_t k = 0; k < 16; ++k) p += uptake[k] * (weight[k] *= 16.0 / sum) / 16.0;
+                const double drawn = branches != 0 || !below ? 1.0 : fluorescent ? p : 1.0 - p;
                 for (std::size_t k = 0; k < 16; ++k)
                     taken_up[k] = double(incident.v[k]) * weight[k] *
-                                  (!below ? uptake[k] : fluorescent ? uptake[k] / p : (1.0 - uptake[k]) / (1.0 - p));
+                                  (fluorescent || !below ? uptake[k] : 1.0 - uptake[k]) / drawn;
                 const double conversions = a.ledgers[list[i]].conversions + 1.0;
                 const double chain =
                     conversions < 16.0 ? (481.0 - conversions) / (16.0 - conversions) * 15.0 / 480.0 : 0.0;

@@ -66,18 +66,28 @@ Retraced retrace(const Events& e, std::uint32_t component, std::uint32_t seed, s
     round.count = count;
     round.event = 4;
     round.component = component;
-    round.second_exit = count;
-    round.slot_limit = round.second_limit = count;
     round.last = last;
+    round.exits = 1;
+    ExitGroups groups{};
+    groups.count = 2;
+    const std::uint32_t other = component == STOKES_MAP_SINGLE ? STOKES_MAP_MULTIPLE : component;
+    for (const std::uint32_t g : {0u, 1u}) {
+        groups.component[g] = g == 0 ? component : other;
+        groups.first_exit[g] = g * count;
+        groups.first_slot[g] = component == other ? g * count : 0;
+        groups.slot_limit[g] = groups.first_slot[g] + count;
+    }
+    std::vector<Flux16> fluorescence = e.first_map;
+    fluorescence.insert(fluorescence.end(), e.second_map.begin(), e.second_map.end());
     std::vector<MaterialRecord> materials = translucent_materials();
     for (MaterialRecord& m : materials) m.exit_scale = exit_scale;
     const Buffer<Ray> rays = on_device(std::vector<Ray>(count, Ray{}));
     const Buffer<Flux16> flux = on_device(e.flux);
     const Buffer<PathLedger> ledgers = on_device(e.ledgers);
-    Program(test_device(), "deposit_subsurface.cl")
+    Program(test_device(), "retrace_subsurface.cl")
         .kernel("retrace_exits")
-        .launch(count, round, pass_on_device(seed, 0, offset_mm), on_device(e.exits), on_device(materials),
-                on_device(e.first_map), on_device(e.second_map), rays, flux, ledgers);
+        .launch(count, round, groups, pass_on_device(seed, 0, offset_mm), on_device(e.exits), on_device(materials),
+                on_device(fluorescence), on_device(e.first_map), on_device(e.second_map), rays, flux, ledgers);
     return {rays.download(), flux.download(), ledgers.download()};
 }
 
@@ -196,4 +206,107 @@ TEST_CASE("light that leaves through a reflecting surface is weighted by its tra
     }
     CHECK(double(weight.count()) > 0.999 * paths);
     CHECK(std::abs(weight.z(1.0)) < 4.0);
+}
+
+namespace {
+
+// Events of both branches with three exits a component, and the probability that each exit is the one that goes on:
+// kept/in, over their sum where it exceeds one. A chi-square test of thirteen outcomes, and the mean of what is carried
+// at each wavelength, the sum of what is stored where a surface was found.
+void check_branches(double kept_share) {
+    CAPTURE(kept_share);
+    constexpr std::uint32_t paths = 1u << 15, each = 3, per_map = paths * each;
+    std::mt19937 generator(61);
+    const Flux16 arriving = random_flux(generator, 0.5, 1.5);
+    const std::vector<std::uint32_t> components = {STOKES_MAP_FLUORESCENCE, STOKES_MAP_FLUORESCENCE, STOKES_MAP_SINGLE,
+                                                   STOKES_MAP_MULTIPLE};
+    std::array<Flux16, 4> taken_up{}, sent_on{};
+    std::array<std::array<Flux16, each>, 4> stored;
+    std::array<double, 13> shares{};
+    double sum = 0.0;
+    for (std::size_t g = 0; g < 4; ++g)
+        for (std::size_t k = 0; k < each; ++k) {
+            stored[g][k] = times(random_flux(generator, 0.0, 1.0), kept_share / 6.0);
+            sum += shares[g * each + k] = sum_of(stored[g][k]) / sum_of(arriving);
+        }
+    for (std::size_t b : {std::size_t{0}, std::size_t{2}}) {
+        taken_up[b] = random_flux(generator, 0.2, 0.8);
+        sent_on[b] = random_flux(generator, 0.1, 0.6);
+    }
+    for (double& share : shares) share /= std::max(sum, 1.0);
+    shares[12] = std::max(1.0 - sum, 0.0);
+
+    const std::size_t missed = 4;  // the second scattered exit of fluorescence
+    Events e;
+    ExitGroups groups{};
+    groups.count = 4;
+    std::array<std::vector<Flux16>, 3> maps;
+    for (std::size_t g = 0; g < 4; ++g) {
+        groups.component[g] = components[g];
+        groups.first_exit[g] = static_cast<std::uint32_t>(e.exits.size());
+        groups.first_slot[g] = static_cast<std::uint32_t>(maps[components[g]].size());
+        groups.slot_limit[g] = groups.first_slot[g] + per_map;
+        const Flux16& event = g % 2 == 0 ? sent_on[g] : taken_up[g - 1];
+        for (std::uint32_t i = 0; i < paths; ++i)
+            for (std::size_t k = 0; k < each; ++k) {
+                const double tilt = 0.3 * double(g * each + k);
+                const glm::dvec3 normal(0.0, std::cos(tilt), std::sin(tilt));
+                e.exits.push_back(exit_at(normal, i, stored[g][k], event, g * each + k != missed, 0));
+                maps[components[g]].push_back(stored[g][k]);
+            }
+    }
+    EventRound round{};
+    round.count = paths;
+    round.event = 4;
+    round.exits = each;
+    round.branches = 1;
+    const Buffer<Ray> rays = on_device(std::vector<Ray>(paths, Ray{}));
+    const Buffer<Flux16> flux = on_device(std::vector<Flux16>(paths, arriving));
+    const Buffer<PathLedger> ledgers = on_device(std::vector<PathLedger>(paths, open_ledger(arriving)));
+    Program(test_device(), "retrace_subsurface.cl")
+        .kernel("retrace_exits")
+        .launch(paths, round, groups, pass_on_device(55, 0, offset_mm), on_device(e.exits),
+                on_device(translucent_materials()), on_device(maps[0]), on_device(maps[1]), on_device(maps[2]), rays,
+                flux, ledgers);
+    const Retraced r{rays.download(), flux.download(), ledgers.download()};
+    CHECK(worst_imbalance(r.ledgers, r.flux) < 1e-5);
+
+    std::vector<double> counts(13, 0.0);
+    std::array<Sample, 16> carried;
+    for (std::uint32_t i = 0; i < paths; ++i) {
+        const PathLedger& ledger = r.ledgers[i];
+        const double lost = sum_of(taken_up[0]) - sum_of(sent_on[0]);
+        REQUIRE(double(ledger.stokes_loss.energy) == Approx(lost).margin(1e-4));
+        std::size_t outcome = ledger.fate == STOKES_FATE_ABSORBED ? 12 : missed;
+        if (ledger.fate == STOKES_FATE_ALIVE) {
+            for (std::size_t x = 0; x < 12; ++x)
+                if (leaves_at(r.rays[i], {0.0, std::cos(0.3 * double(x)), std::sin(0.3 * double(x))})) outcome = x;
+            REQUIRE(sum_of(r.flux[i]) == Approx(std::max(sum, 1.0) * sum_of(arriving)).epsilon(1e-5));
+            REQUIRE(ledger.conversions == (outcome < 6 ? 1u : 0u));
+        }
+        counts[outcome] += 1.0;
+        for (std::size_t k = 0; k < 16; ++k)
+            carried[k].add(ledger.fate == STOKES_FATE_ALIVE ? double(r.flux[i].v[k]) : 0.0);
+    }
+    std::vector<double> means;
+    for (const double share : shares) means.push_back(share * paths);
+    if (means.back() < 1.0) {
+        CHECK(counts.back() <= 2.0);
+        counts.pop_back();
+        means.pop_back();
+    }
+    CHECK(chi_square_p_value(counts, means) > 1e-4);
+    for (std::size_t k = 0; k < 16; ++k) {
+        double expected = 0.0;
+        for (std::size_t x = 0; x < 12; ++x)
+            if (x != missed) expected += double(stored[x / each][x % each].v[k]);
+        CHECK(std::abs(carried[k].mean() - expected) <= 4.5 * carried[k].standard_error() + 1e-6);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("of all that both branches store, one exit is traced on, and all in the mean", "[retrace_exits]") {
+    check_branches(0.8);
+    check_branches(2.4);
 }

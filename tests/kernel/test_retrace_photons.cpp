@@ -34,6 +34,7 @@ EventRound round_for(std::size_t count, std::uint32_t last = 0) {
     round.second_exit = std::uint32_t(count);
     round.slot_limit = std::uint32_t(count);
     round.last = last;
+    round.exits = 1;
     return round;
 }
 
@@ -44,9 +45,10 @@ Retraced retrace_elastic(const Deposited& d, std::uint32_t seed, std::uint32_t l
     const Buffer<PathLedger> ledgers = on_device(d.ledgers);
     EventRound round = round_for(count, last);
     round.component = STOKES_MAP_SINGLE;
-    Program(test_device(), "deposit_subsurface.cl")
+    Program(test_device(), "retrace_subsurface.cl")
         .kernel("retrace_elastic")
-        .launch(count, round, pass_on_device(seed, 0, offset_mm), on_device(d.exits), rays, flux, ledgers);
+        .launch(count, round, pass_on_device(seed, 0, offset_mm), on_device(d.exits),
+                on_device(translucent_materials()), rays, flux, ledgers);
     return {rays.download(), flux.download(), ledgers.download()};
 }
 
@@ -54,7 +56,7 @@ Retraced retrace_fluorescence(const Deposited& d, EventRound round, std::uint32_
     const Buffer<Ray> rays = on_device(std::vector<Ray>(d.flux.size(), Ray{}));
     const Buffer<Flux16> flux = on_device(d.flux);
     const Buffer<PathLedger> ledgers = on_device(d.ledgers);
-    Program(test_device(), "deposit_subsurface.cl")
+    Program(test_device(), "retrace_subsurface.cl")
         .kernel("retrace_fluorescence")
         .launch(round.count, round, pass_on_device(seed, 0, offset_mm), on_device(d.exits),
                 on_device(translucent_materials()), on_device(translucent_spectra()), on_device(d.map_flux),

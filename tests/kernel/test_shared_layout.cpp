@@ -85,10 +85,12 @@ using namespace stokes;
         F(ExitPoint, way_mm) F(ExitPoint, scale) F(ExitPoint, kept) F(ExitPoint, event_light) \
     S(EventRound) F(EventRound, count) F(EventRound, event) F(EventRound, component) F(EventRound, sampler) \
         F(EventRound, first_exit) F(EventRound, first_slot) F(EventRound, slot_limit) \
-        F(EventRound, second_exit) F(EventRound, second_slot) F(EventRound, second_limit) F(EventRound, last) \
+        F(EventRound, second_exit) F(EventRound, last) F(EventRound, exits) F(EventRound, branches) \
         F(EventRound, pad) \
+    S(ExitGroups) F(ExitGroups, count) F(ExitGroups, component) F(ExitGroups, first_exit) \
+        F(ExitGroups, first_slot) F(ExitGroups, slot_limit) F(ExitGroups, pad) \
     S(ListCounts) F(ListCounts, alive) F(ListCounts, diffuse) F(ListCounts, fluorescence) \
-        F(ListCounts, elastic) \
+        F(ListCounts, elastic) F(ListCounts, branches) \
     S(PhotonHead) F(PhotonHead, x) F(PhotonHead, y) F(PhotonHead, z) F(PhotonHead, normal) \
     S(TableShape) F(TableShape, offset) F(TableShape, row_count) F(TableShape, row_first) \
         F(TableShape, row_step) F(TableShape, r_count) F(TableShape, r_first) F(TableShape, r_step) \
