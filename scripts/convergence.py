@@ -50,8 +50,14 @@ def parse_arguments():
         default="merged",
         help="plain and best merged, or walks, whose difference from the scene's model then counts as error",
     )
-    parser.add_argument("--pairs", action=argparse.BooleanOptionalAction, help="scattering against none; not in --quick")
-    parser.add_argument("--sources", action=argparse.BooleanOptionalAction, help="error by source; not in --quick")
+    parser.add_argument(
+        "--pairs",
+        metavar="NAMES",
+        help="scattering against none, of prisms,masks; default: both with the default scenes, not in --quick",
+    )
+    parser.add_argument(
+        "--sources", action=argparse.BooleanOptionalAction, help="the error by source; default: but for --quick"
+    )
     parser.add_argument("--seeds", type=positive, metavar="N", help="all of them, however long it takes")
     for name in ("passes", "photons", "truth-passes"):
         parser.add_argument(f"--{name}", type=positive, metavar="N")
@@ -113,6 +119,23 @@ def chosen_cases(options, size):
     if len(set(names)) < len(names):
         fail(f"expected scenes of different names, got {' '.join(names)}")
     return cases
+
+
+def chosen_pairs(options, size):
+    """Name -> (case with scattering, case without)."""
+    every = plan.scattering_pairs()
+    names = [] if options.quick or options.scenes else list(every)
+    if options.pairs is not None:
+        names = [name.strip() for name in options.pairs.split(",") if name.strip()]
+    unknown = [name for name in names if name not in every]
+    if unknown:
+        fail(f"--pairs: expected some of {','.join(every)}, got {','.join(unknown)}")
+
+    def cases(name):
+        words = (f"{name} with", f"{name} without")
+        return tuple(plan.Case(word, scene, size, options.transport) for word, scene in zip(words, every[name]))
+
+    return {name: cases(name) for name in names}
 
 
 class Measurement:
@@ -186,7 +209,8 @@ def plus(numbers, name, digits=2):
 
 
 def print_tables(found, pairs):
-    print(f"\n{'scene':12} {'sampler':12} {'efficiency':>17} {'passes ratio':>17} {'time a pass':>13} {'bias':>6}  slope")
+    heads = f"{'efficiency':>17} {'passes ratio':>17} {'time a pass':>13} {'bias':>6}  slope"
+    print(f"\n{'scene':12} {'sampler':12} {heads}")
     for scene, samplers_of in found.items():
         for name, n in samplers_of.items():
             beside = f"{'1':>17} {'1':>17} {'1':>13} {'':>6}"
@@ -221,13 +245,8 @@ def measure(options, size, folder):
     start = time.monotonic()
     known, names = chosen_samplers(options)
     cases = chosen_cases(options, size)
-    with_pairs = options.pairs if options.pairs is not None else not options.quick and not options.scenes
     with_sources = options.sources if options.sources is not None else not options.quick
-    pairs = {}
-    if with_pairs:
-        for name, scenes_of in plan.scattering_pairs().items():
-            words = (f"{name} with", f"{name} without")
-            pairs[name] = tuple(plan.Case(w, s, size, options.transport) for w, s in zip(words, scenes_of))
+    pairs = chosen_pairs(options, size)
     pair_cases = [case for pair in pairs.values() for case in pair]
     measurement = Measurement(options, size, known, names, folder)
     measurement.prepare(cases + pair_cases)
@@ -251,6 +270,7 @@ def measure(options, size, folder):
         about = {"transport": case.transport, "width": width, "height": height, "truth": truths[case.name]}
         about["radius_first_mm"] = measurement.radii[case.name]
         about["radius_last_mm"] = case.last_radius(measurement.radii[case.name])
+        about["radius_of_truth_mm"] = case.truth_radius(measurement.radii[case.name])
         numbers[case.name] = {"about": about, **found[case.name]}
     if compared:
         numbers["scattering_over_none"] = compared

@@ -1,9 +1,9 @@
 """From renders to numbers.
 
-The error of a picture P is measured against the mean T of independent renders. E|P - T|^2 = E|P - E T|^2 + E|T - E T|^2;
-the second term, known from how the renders of T differ, is taken off, and what is left is the mean square error (MSE)
-against the limit of T, over pixels and over X, Y and Z. Standard errors are jackknifes over the seeds, with what is
-uncertain in the second term added in quadrature."""
+The error of a picture P is measured against the mean T of independent renders. E|P - T|^2 = E|P - E T|^2 +
+E|T - E T|^2; the second term, known from how the renders of T differ, is taken off, and what is left is the mean square
+error (MSE) against the limit of T, over pixels and over X, Y and Z. Standard errors are jackknifes over the seeds, with
+what is uncertain in the second term added in quadrature."""
 
 import csv
 import dataclasses
@@ -112,7 +112,8 @@ def against(a, b, truth_a, truth_b, layer):
         wall = np.log(a.wall_s[chosen].sum() / b.wall_s[chosen].sum())
         return [gap / -slope if slope < 0 else np.nan, gap + cost, gap + wall, cost]
 
-    error = max(t.variance_error[layer] / t.variance[layer] if t.variance[layer] > 0 else 0.0 for t in (truth_a, truth_b))
+    uncertain = [t.variance_error[layer] / t.variance[layer] for t in (truth_a, truth_b) if t.variance[layer] > 0]
+    error = max(uncertain, default=0.0)
     values, errors = with_truth(numbers, seeds, 1.0, error)
     ratios = np.exp(values)
     return list(zip(ratios, ratios * errors))
@@ -206,15 +207,15 @@ def sources(curves, twice, truth):
             shared = float(np.mean((a - a.mean(axis=0)) * (b - b.mean(axis=0)))) * n / (n - 1)
             total = float(np.mean(a.var(axis=0, ddof=1) + b.var(axis=0, ddof=1))) / 2
             kernel = statistics.own_square(a - target) - variance
-            whole = shared + (total - shared) + kernel
-            return [shared, total - shared, kernel, whole]
+            mse = total + kernel
+            return [shared / mse, (total - shared) / mse, kernel / mse, mse]
 
         values, errors = with_truth(parts, len(first), truth.variance[layer], truth.variance_error[layer])
         names = ("wavelengths_and_camera", "photons", "kernel")
         found[layer] = {"relative_rmse": float(np.sqrt(max(values[3], 0)) / truth.level[layer])}
         for name, value, error in zip(names, values, errors):
-            found[layer][name] = value / values[3]
-            found[layer][name + "_error"] = error / values[3]
+            found[layer][name] = value
+            found[layer][name + "_error"] = error
     return found
 
 

@@ -3,7 +3,7 @@
 import matplotlib
 
 matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from matplotlib import pyplot, ticker  # noqa: E402
 
 COLOURS = ("#555555", "#2a6fbb", "#d9822b", "#3a8f4d", "#a0539b", "#b5413b")
 
@@ -33,6 +33,13 @@ def draw(scenes, file):
             axis.set_xscale("log", base=2 if across == "passes" else 10)
             axis.set_yscale("log")
             axis.set_xlabel(label)
+            if across != "passes":
+                axis.xaxis.set_minor_formatter(ticker.NullFormatter())
+                axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+                axis.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+            axis.yaxis.set_minor_formatter(ticker.NullFormatter())
+            axis.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+            axis.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
             axis.grid(alpha=0.3, which="both")
         for axis in row:
             axis.axhline(truth["whole"]["relative_rmse"], color="black", linestyle=":", linewidth=0.8)

@@ -26,15 +26,15 @@ class Size:
     limit_s: float = math.inf
 
 
-FULL = Size("full", passes=256, photons=None, pixels=160 * 120, seeds=8, truth_passes=512, truth_parts=4)
-QUICK = Size("quick", 32, 16384, 64 * 48, seeds=4, truth_passes=80, truth_parts=3, limit_s=108)
+FULL = Size("full", passes=256, photons=None, pixels=160 * 120, seeds=8, truth_passes=1024, truth_parts=4)
+QUICK = Size("quick", 32, 16384, 64 * 48, seeds=4, truth_passes=128, truth_parts=3, limit_s=108)
 TINY = Size("tiny", 8, 2048, 16 * 12, seeds=2, truth_passes=8, truth_parts=2)
 
 LEAST_SEEDS = 2
 PHOTONS = 262144  # of a scene that does not say
 FIRST_SEED, TRUTH_SEED = 1, 100001
 # Of the truth, beside the last of the curves: it does not shrink, so that its renders have one expectation.
-TRUTH_RADIUS = 0.25
+TRUTH_RADIUS = 0.5
 DEFAULT_SCENES = ("prisms", "masks", "sectors", "glow", "sphere")
 ROWS = ("front", "back")
 COLOURS = {"green": "545", "yellow": "585", "red": "655"}
@@ -80,10 +80,12 @@ class Case:
         n = np.arange(1, self.size.passes)
         return first * math.sqrt(np.prod((n + alpha) / (n + 1)))
 
+    def truth_radius(self, first):
+        return TRUTH_RADIUS * self.last_radius(first)
+
     def truth_jobs(self, samplers, first_radius, walk):
         """Parts of the truth, each a pair of plain and best; with walk, both are walks."""
-        radius = TRUTH_RADIUS * self.last_radius(first_radius)
-        flags = ("--radius", repr(radius), "--alpha", "1")
+        flags = ("--radius", repr(self.truth_radius(first_radius)), "--alpha", "1")
         transport = "walk" if walk else None
         return [
             [
