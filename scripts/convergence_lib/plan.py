@@ -27,7 +27,7 @@ class Size:
 
 
 FULL = Size("full", passes=256, photons=None, pixels=160 * 120, seeds=8, truth_passes=1024, truth_parts=4)
-QUICK = Size("quick", 32, 16384, 64 * 48, seeds=4, truth_passes=128, truth_parts=3, limit_s=108)
+QUICK = Size("quick", 32, 16384, 64 * 48, seeds=4, truth_passes=96, truth_parts=3, limit_s=108)
 TINY = Size("tiny", 8, 2048, 16 * 12, seeds=2, truth_passes=8, truth_parts=2)
 
 LEAST_SEEDS = 2
