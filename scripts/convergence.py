@@ -218,6 +218,8 @@ def print_tables(found, pairs):
                 beside = f"{plus(n, 'efficiency'):>17} {plus(n, 'passes_ratio'):>17} {plus(n, 'time_ratio'):>13} "
                 beside += f"{n['bias_sigma']:>6.2f}"
             print(f"{scene:12} {name:12} {beside}  {plus(n, 'slope')}")
+        if any(math.isnan(n["slope_error"]) for n in samplers_of.values()):
+            print(f"note: {scene}: the truth is too uncertain beside the curves: more --truth-passes")
     for scene, samplers_of in pairs.items():
         for name, n in samplers_of.items():
             print(f"{scene:12} {name:12} passes with scattering over without: {plus(n, 'passes_ratio')}")
