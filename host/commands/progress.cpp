@@ -65,12 +65,17 @@ double Progress::elapsed_s() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
+double Progress::processor_s() const {
+    return static_cast<double>(std::clock() - processor_start_) / CLOCKS_PER_SEC;
+}
+
 void Progress::preparing() {
     if (!quiet_) show("preparing (compiling kernels ...)");
 }
 
 void Progress::start() {
     last_ = start_ = Clock::now();
+    processor_start_ = std::clock();
 }
 
 void Progress::update(std::uint32_t passes_done, std::uint64_t photons) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <string>
 
 namespace stokes {
@@ -36,12 +37,15 @@ class Progress {
     void update(std::uint32_t passes_done, std::uint64_t photons);
     void finish();  // ends the line
     double elapsed_s() const;
-    // What takes this time is no part of the passes: elapsed_s() leaves it out.
+    double processor_s() const;  // of all threads of the process, meanwhile
+    // What takes this time is no part of the passes: elapsed_s() and processor_s() leave it out.
     template <class Work>
     void pause(const Work& work) {
         const auto begin = Clock::now();
+        const std::clock_t processor_begin = std::clock();
         work();
         start_ += Clock::now() - begin;
+        processor_start_ += std::clock() - processor_begin;
     }
 
   private:
@@ -50,6 +54,7 @@ class Progress {
     std::uint32_t passes_;
     bool quiet_, terminal_, shown_ = false;
     Clock::time_point start_ = Clock::now(), last_;
+    std::clock_t processor_start_ = std::clock();
 };
 
 }  // namespace stokes

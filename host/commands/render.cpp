@@ -236,7 +236,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     const double set_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress.start();
     if (renderer) render_passes(*renderer, device, scene.render.passes, progress, curve.get());
-    const double wall_s = progress.elapsed_s();
+    const double wall_s = progress.elapsed_s(), processor_s = progress.processor_s();
     if (!renderer || renderer->passes() == 0) {
         progress.finish();
         fmt::print(stderr, "stokes: interrupted before the first pass: nothing was written\n");
@@ -245,6 +245,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     const FilmImage film = renderer->image();
     RenderStats stats = collect_stats(scene, device, *renderer);
     stats.wall_s = wall_s;
+    stats.processor_s = processor_s;
     stats.set_up_s = set_up_s;
     if (!options.quiet) say_what_was_dropped(stats);
     warn_about(stats.ledger);

@@ -1,5 +1,7 @@
-"""Reads the OpenEXR pictures that stokes writes: single-part scan lines, ZIP or no compression, 32-bit floats."""
+"""Reads the OpenEXR pictures that stokes writes, and writes such: single-part scan lines, 32-bit floats, ZIP or no
+compression."""
 
+import pathlib
 import struct
 import zlib
 
@@ -107,3 +109,39 @@ def read(path):
         prefix = name + "." if name else ""
         layers[name] = np.stack([planes[:, names.index(prefix + c)] for c in "RGB"], axis=-1).astype(float)
     return Picture(layers, attributes)
+
+
+def write(path, layers):
+    """layers as of a Picture, all of one size, to an uncompressed file, which is replaced as a whole."""
+    planes = {
+        f"{name}.{c}" if name else c: layer[..., "RGB".index(c)] for name, layer in layers.items() for c in "RGB"
+    }
+    names = sorted(planes, key=str.encode)  # the order that the format asks for
+    height, width = planes[names[0]].shape
+
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<i4B2i", FLOAT, 0, 0, 0, 0, 1, 1) for name in names)
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = struct.pack("<ii", MAGIC, 2) + b"".join(
+        (
+            attribute("channels", "chlist", channels + b"\0"),
+            attribute("compression", "compression", b"\0"),
+            attribute("dataWindow", "box2i", window),
+            attribute("displayWindow", "box2i", window),
+            attribute("lineOrder", "lineOrder", b"\0"),
+            attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+            attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+            attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+            b"\0",
+        )
+    )
+    line = 8 + 4 * width * len(names)
+    first = len(header) + 8 * height
+    offsets = struct.pack(f"<{height}Q", *range(first, first + line * height, line))
+    rows = np.stack([planes[name] for name in names], axis=1).astype("<f4")  # [height, channels, width]
+    lines = b"".join(struct.pack("<ii", y, line - 8) + row.tobytes() for y, row in enumerate(rows))
+    unfinished = pathlib.Path(f"{path}.tmp")
+    unfinished.write_bytes(header + offsets + lines)
+    unfinished.replace(path)

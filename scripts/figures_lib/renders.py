@@ -68,7 +68,7 @@ class Renderer:
 
     def run(self, jobs):
         """Results of jobs, by name, earlier ones first."""
-        self.total = sum(job.cost for job in jobs)
+        self.total = self.done + sum(job.cost for job in jobs)
         for number, job in enumerate(jobs, 1):
             self._say(f"[{number}/{len(jobs)}] {job.name}")
             self.results[job.name] = self._result(job)

@@ -10,20 +10,25 @@ SCENES = pathlib.Path(__file__).resolve().parent.parent.parent / "scenes"
 
 def load(name):
     """scenes/NAME.json as a dict whose files have absolute paths."""
-    with open(SCENES / f"{name}.json", encoding="utf-8") as file:
+    return load_file(SCENES / f"{name}.json")
+
+
+def load_file(path):
+    """The same of any scene file."""
+    with open(path, encoding="utf-8") as file:
         scene = json.load(file)
     scene.pop("$schema", None)
-    _resolve(scene)
+    _resolve(scene, pathlib.Path(path).resolve().parent)
     return scene
 
 
-def _resolve(node):
+def _resolve(node, folder):
     """Makes every file, and every texture, below a node absolute."""
     for key, value in node.items() if isinstance(node, dict) else enumerate(node):
         if key in ("file", "texture") and isinstance(value, str):
-            node[key] = str((SCENES / value).resolve())
+            node[key] = str((folder / value).resolve())
         elif isinstance(value, (dict, list)):
-            _resolve(value)
+            _resolve(value, folder)
 
 
 def change(scene, changes):

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <ctime>
 #include <thread>
 
 #include "host/commands/progress.hpp"
@@ -68,4 +69,21 @@ TEST_CASE("what pauses the passes is not counted", "[progress]") {
     progress.pause([] { std::this_thread::sleep_for(std::chrono::milliseconds(400)); });
     CHECK(progress.elapsed_s() - before_s < 0.3);
     CHECK(progress.elapsed_s() >= before_s);
+}
+
+TEST_CASE("processor time counts work, not waiting, and what pauses the passes not at all", "[progress]") {
+    const auto work = [] {
+        const std::clock_t end = std::clock() + CLOCKS_PER_SEC / 5;
+        while (std::clock() < end) {}
+    };
+    Progress progress(4, true);
+    work();
+    progress.start();
+    CHECK(progress.processor_s() < 0.05);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    progress.pause(work);
+    CHECK(progress.processor_s() < 0.1);
+    work();
+    CHECK(progress.processor_s() > 0.19);
+    CHECK(progress.processor_s() < 0.3);
 }

@@ -1,0 +1,45 @@
+"""The samplers that are compared."""
+
+import dataclasses
+import re
+import subprocess
+
+
+@dataclasses.dataclass(frozen=True)
+class Sampler:
+    """One way to sample, on top of plain for all others. independent: the photons of a pass are independent of one
+    another, so that the variance can be split by source."""
+
+    name: str
+    flags: tuple = ()  # of stokes render
+    independent: bool = True
+
+
+PLAIN = "plain"
+BEST = "best"  # all of them together
+
+# A sampler whose flag the program does not know is left out, with a note.
+SINGLE = (
+    Sampler("wavelengths", ("--wavelengths", "importance")),
+    Sampler("branches", ("--branches", "both")),
+    Sampler("emission", ("--emission", "stratified"), independent=False),
+    Sampler("direct", ("--direct", "rays")),
+)
+
+
+def known_flags(stokes):
+    """The long flags that `stokes render --help` names."""
+    text = subprocess.run([str(stokes), "render", "--help"], check=True, capture_output=True, text=True).stdout
+    return set(re.findall(r"--[a-z][a-z-]*", text))
+
+
+def available(known):
+    """Plain, best and the single samplers whose flags are known, by name; and the names of those left out. Best names
+    every flag, as what it stands for without depends on the transport model."""
+    singles = [sampler for sampler in SINGLE if sampler.flags[0] in known]
+    flags = sum((sampler.flags for sampler in singles), ("--sampling", "best"))
+    independent = all(sampler.independent for sampler in singles)
+    found = [Sampler(PLAIN, ("--sampling", "plain")), Sampler(BEST, flags, independent)]
+    found += [dataclasses.replace(s, flags=("--sampling", "plain", *s.flags)) for s in singles]
+    left_out = [sampler.name for sampler in SINGLE if sampler not in singles]
+    return {sampler.name: sampler for sampler in found}, left_out
