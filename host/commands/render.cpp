@@ -35,7 +35,7 @@ extern "C" void catch_signal(int signal) {
 
 struct RenderOptions {
     std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
-    std::string reference_file, csv_file, sampling, wavelengths, branches;
+    std::string reference_file, csv_file, sampling, wavelengths, branches, emission, direct, radii;
     int passes = 0, every = 0, exits = 0;
     DeviceFlags device;
     std::int64_t photons = 0;
@@ -63,6 +63,9 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
         render.wavelengths.reset();
         render.branches.reset();
         render.exits.reset();
+        render.emission.reset();
+        render.direct.reset();
+        render.radii.reset();
     }
     if (command.count("--wavelengths"))
         render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
@@ -77,6 +80,10 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
                              transport_words[static_cast<std::size_t>(render.transport)] + "\"");
         render.exits = options.exits;
     }
+    if (command.count("--emission"))
+        render.emission = static_cast<Emission>(index_of_word(options.emission, emission_words));
+    if (command.count("--direct")) render.direct = static_cast<Direct>(index_of_word(options.direct, direct_words));
+    if (command.count("--radii")) render.radii = static_cast<Radii>(index_of_word(options.radii, radii_words));
     if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
     if (command.count("--size")) {
         char rest = 0;
@@ -103,6 +110,9 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.wavelengths", stats.wavelengths},
             {"stokes.branches", stats.branches},
             {"stokes.exits", stats.exits},
+            {"stokes.emission", stats.emission},
+            {"stokes.direct", stats.direct},
+            {"stokes.radii", stats.radii},
             {"stokes.passes", static_cast<int>(stats.passes)},
             {"stokes.photonsPerPass", static_cast<double>(scene.render.photons_per_pass)},
             {"stokes.seed", static_cast<double>(stats.seed)},
@@ -127,6 +137,9 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
     stats.branches = branches_words[static_cast<std::size_t>(chosen_branches(scene.render))];
     stats.exits = chosen_exits(scene.render);
+    stats.emission = emission_words[static_cast<std::size_t>(chosen_emission(scene.render))];
+    stats.direct = direct_words[static_cast<std::size_t>(chosen_direct(scene.render))];
+    stats.radii = radii_words[static_cast<std::size_t>(chosen_radii(scene.render))];
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -303,6 +316,23 @@ void add_render_command(CLI::App& app) {
     command->add_option("--exits", options->exits, "Transport conserving: exit points an entry; default 1")
         ->type_name("N")
         ->check(CLI::Range(1, most_exits));
+    command
+        ->add_option("--emission", options->emission,
+                     "Where photons start: at random, evenly spread, or also where the camera sees their light; "
+                     "default: aimed")
+        ->type_name("HOW")
+        ->check(word_of(emission_words));
+    command
+        ->add_option("--direct", options->direct,
+                     "Light straight from the lights on diffuse surfaces: by photons, or by shadow rays; default: rays")
+        ->type_name("HOW")
+        ->check(word_of(direct_words));
+    command
+        ->add_option("--radii", options->radii,
+                     "Radius of the density estimate: one for the picture, or larger where photons are few; default: "
+                     "one")
+        ->type_name("HOW")
+        ->check(word_of(radii_words));
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

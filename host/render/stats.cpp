@@ -50,6 +50,9 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("wavelengths", json_quoted(s.wavelengths));
     add("branches", json_quoted(s.branches));
     add("exits", std::to_string(s.exits));
+    add("emission", json_quoted(s.emission));
+    add("direct", json_quoted(s.direct));
+    add("radii", json_quoted(s.radii));
     add("passes", number(std::uint64_t{s.passes}));
     add("seed", number(std::uint64_t{s.seed}));
     add("width", std::to_string(s.width));

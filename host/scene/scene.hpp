@@ -48,6 +48,21 @@ inline const std::vector<std::string> wavelengths_words = {"uniform", "importanc
 enum class Branches { roulette, both };
 inline const std::vector<std::string> branches_words = {"roulette", "both"};
 
+// Where photons start: anywhere on the lights at random, evenly spread over them, or evenly and most where the camera
+// sees their light. As scene files and the command line spell them, in order.
+enum class Emission { random, stratified, aimed };
+inline const std::vector<std::string> emission_words = {"random", "stratified", "aimed"};
+
+// Where the light comes from that falls straight from the lights onto diffuse surfaces: from photons, or by shadow rays
+// from what the camera sees. As scene files and the command line spell them, in order.
+enum class Direct { photons, rays };
+inline const std::vector<std::string> direct_words = {"photons", "rays"};
+
+// The radius of the density estimate: one for the whole picture, or more where photons are few. As scene files and the
+// command line spell them, in order.
+enum class Radii { one, local };
+inline const std::vector<std::string> radii_words = {"one", "local"};
+
 // Which samplers a render has where it does not name them one by one: the plain ones, or those with the least noise.
 enum class Sampling { plain, best };
 inline const std::vector<std::string> sampling_words = {"plain", "best"};
@@ -69,6 +84,9 @@ struct RenderSettings {
     Sampling sampling = Sampling::best;
     std::optional<Wavelengths> wavelengths;  // none: by sampling and transport
     std::optional<Branches> branches;        // none: by sampling and transport; void for walk
+    std::optional<Emission> emission;        // none: by sampling
+    std::optional<Direct> direct;            // none: by sampling
+    std::optional<Radii> radii;              // none: by sampling
     std::optional<int> exits;                // conserving: exit points an entry and component; none: by sampling
 };
 
@@ -83,6 +101,19 @@ inline Branches chosen_branches(const RenderSettings& render) {
     const bool plain = render.sampling == Sampling::plain || render.transport != Transport::conserving;
     return render.branches.value_or(plain ? Branches::roulette : Branches::both);
 }
+
+// Aimed, unless plain samplers are asked for.
+inline Emission chosen_emission(const RenderSettings& render) {
+    return render.emission.value_or(render.sampling == Sampling::plain ? Emission::random : Emission::aimed);
+}
+
+// By rays, unless plain samplers are asked for.
+inline Direct chosen_direct(const RenderSettings& render) {
+    return render.direct.value_or(render.sampling == Sampling::plain ? Direct::photons : Direct::rays);
+}
+
+// One, unless others are asked for.
+inline Radii chosen_radii(const RenderSettings& render) { return render.radii.value_or(Radii::one); }
 
 // One but for the model `conserving`.
 inline int chosen_exits(const RenderSettings& render) {

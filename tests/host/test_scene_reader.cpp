@@ -119,6 +119,25 @@ TEST_CASE("Branches and exits are as the scene says, or by its sampling and tran
     CHECK(chosen_branches(render(R"(, "branches": "roulette")")) == Branches::roulette);
 }
 
+TEST_CASE("Emission, direct light and radii are as the scene says, or by its sampling") {
+    const auto render = [](const std::string& settings) {
+        return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;
+    };
+    const RenderSettings best = render(""), plain = render(R"(, "sampling": "plain")");
+    CHECK(chosen_emission(best) == Emission::aimed);
+    CHECK(chosen_direct(best) == Direct::rays);
+    CHECK(chosen_radii(best) == Radii::one);
+    CHECK(chosen_emission(plain) == Emission::random);
+    CHECK(chosen_direct(plain) == Direct::photons);
+    CHECK(chosen_radii(plain) == Radii::one);
+    const RenderSettings given =
+        render(R"(, "sampling": "plain", "emission": "stratified", "direct": "rays", "radii": "local")");
+    CHECK(chosen_emission(given) == Emission::stratified);
+    CHECK(chosen_direct(given) == Direct::rays);
+    CHECK(chosen_radii(given) == Radii::local);
+    CHECK(chosen_direct(render(R"(, "direct": "photons")")) == Direct::photons);
+}
+
 TEST_CASE("A surface reflects where the scene says so") {
     CHECK_FALSE(parse_scene(base, "s.json").materials[1].fresnel);
     const std::string medium = "\"medium\": \"stone\"";

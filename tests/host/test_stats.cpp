@@ -20,6 +20,9 @@ RenderStats example() {
     stats.tables = false;
     stats.wavelengths = "importance";
     stats.branches = "both";
+    stats.emission = "aimed";
+    stats.direct = "rays";
+    stats.radii = "one";
     stats.exits = 3;
     stats.passes = 12;
     stats.seed = 4000000000u;
@@ -65,6 +68,9 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     CHECK(json.at("tables") == false);
     CHECK(json.at("wavelengths") == "importance");
     CHECK(json.at("branches") == "both");
+    CHECK(json.at("emission") == "aimed");
+    CHECK(json.at("direct") == "rays");
+    CHECK(json.at("radii") == "one");
     CHECK(json.at("exits") == 3);
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
