@@ -1,5 +1,7 @@
 // Stage 1 of a pass: photons leave the lights.
+#include "lib/emission.clh"
 #include "lib/inline.clh"
+#include "lib/light_area.clh"
 #include "lib/light_sum.clh"
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
@@ -8,18 +10,20 @@
 #include "shared/path.h"
 #include "shared/ray.h"
 
-// First index in [first, first + count) whose cumulative value exceeds u times the last one.
-FORCE_INLINE uint pick_area(__global const float* cumulative, uint first, uint count, float u) {
-    const float target = u * cumulative[first + count - 1u];
-    uint low = 0u, high = count - 1u;
-    while (low < high) {
-        const uint middle = (low + high) / 2u;
-        if (cumulative[first + middle] > target)
-            high = middle;
-        else
-            low = middle + 1u;
-    }
-    return low;
+// Writes the state of a path that starts with this flux.
+FORCE_INLINE void start_path(uint path, float3 origin, float3 direction, float16 start,
+                             __global const PassConstants* pass, __global Ray* rays, __global float16* flux,
+                             __global PathLedger* ledgers, __global uint* list) {
+    const float2 total = light_of(start, pass);
+    const bool dark = !(total.x > 0.0f);
+    rays[path] = (Ray){origin.x,    origin.y,    origin.z,    0.0f,
+                       direction.x, direction.y, direction.z, dark ? -1.0f : INFINITY};
+    flux[path] = start;
+    const LightSum none = {0.0f, 0.0f};
+    ledgers[path] = (PathLedger){{total.x, total.y}, none, none, none, none, none, none, none,
+                                 dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total.x / 16.0f,
+                                 0u, 0u, 0u, STOKES_NONE};
+    list[path] = path;
 }
 
 // Work-items: pass->photons, one a path.
@@ -63,15 +67,39 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
         direction = (float3)(light->dx, light->dy, light->dz);
     }
 
-    const float16 start = photon_flux[light_index];
-    const float2 total = light_of(start, pass);
-    const bool dark = !(total.x > 0.0f);
-    rays[path] = (Ray){origin.x,    origin.y,    origin.z,    0.0f,
-                       direction.x, direction.y, direction.z, dark ? -1.0f : INFINITY};
-    flux[path] = start;
-    const LightSum none = {0.0f, 0.0f};
-    ledgers[path] = (PathLedger){{total.x, total.y}, none, none, none, none, none, none, none,
-                                 dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total.x / 16.0f,
-                                 0u, 0u, 0u, STOKES_NONE};
-    list[path] = path;
+    start_path(path, origin, direction, photon_flux[light_index], pass, rays, flux, ledgers, list);
+}
+
+// Work-items: pass->photons, one a path.
+// Reads: cells [cell_count], first_photons [cell_count + 1]: the photons of cell c are first_photons[c] to
+//   first_photons[c + 1] - 1; the rest as emit_photons.
+// Writes: as emit_photons; flux times the cell's weight.
+// The photons of a cell lie on it as the points of a low-discrepancy sequence that goes on from pass to pass.
+__kernel void emit_stratified(__global const PassConstants* pass, uint cell_count, __global const EmissionCell* cells,
+                              __global const uint* first_photons, __global const LightRecord* lights,
+                              __global const float* light_areas, __global const Triangle* triangles,
+                              __global const float16* photon_flux, __global Ray* rays, __global float16* flux,
+                              __global PathLedger* ledgers, __global uint* list) {
+    const uint path = (uint)get_global_id(0);
+    if (path >= pass->photons) return;
+    const uint c = cell_of_photon(first_photons, cell_count, path);
+    __global const LightRecord* light = &lights[cells[c].light];
+    const float4 place =
+        place_of_photon(pass, &cells[c], c, path - first_photons[c], light->kind == STOKES_LIGHT_SURFACE);
+    const EmittedRay start = emitted_ray(light, light_areas, triangles, pass->offset_mm, place);
+    start_path(path, start.origin, start.direction, photon_flux[cells[c].light] * cells[c].weight, pass, rays, flux,
+               ledgers, list);
+}
+
+// Work-items: pass->photons, one a path. Reads as emit_stratified. Writes: where that starts them: cell_of_path [paths]
+// and places [paths] in the cube of the cell's light.
+__kernel void find_places(__global const PassConstants* pass, uint cell_count, __global const EmissionCell* cells,
+                          __global const uint* first_photons, __global const LightRecord* lights,
+                          __global uint* cell_of_path, __global float4* places) {
+    const uint path = (uint)get_global_id(0);
+    if (path >= pass->photons) return;
+    const uint c = cell_of_photon(first_photons, cell_count, path);
+    cell_of_path[path] = c;
+    places[path] = place_of_photon(pass, &cells[c], c, path - first_photons[c],
+                                   lights[cells[c].light].kind == STOKES_LIGHT_SURFACE);
 }

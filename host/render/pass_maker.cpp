@@ -20,7 +20,8 @@ GreenResampler::Sixteen sixteen(const Flux16& row) {
 }  // namespace
 
 PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene& on_device)
-    : scene_(scene),
+    : device_(device),
+      scene_(scene),
       on_device_(on_device),
       strata_(stratified_wavelengths(scene)),
       wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
@@ -51,8 +52,16 @@ void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std
     buffers_.rows.upload(spectra_.rows);
     buffers_.photon_flux.upload(spectra_.photon_flux);
     buffers_.radiance.upload(spectra_.radiance);
+    if (buffers_.cell_count > 0) buffers_.first_photons.upload(cells_.first_photons(scene_.render.seed, pass, photons));
     resample_tables();
     if (on_device_.integrated) sample_media();
+}
+
+void PassMaker::set_emission(EmissionCells cells) {
+    cells_ = std::move(cells);
+    buffers_.cell_count = static_cast<std::uint32_t>(cells_.records().size());
+    buffers_.cells = Buffer<EmissionCell>(device_, "emission cells", cells_.records());
+    buffers_.first_photons = Buffer<std::uint32_t>(device_, "first photons of the cells", cells_.records().size() + 1);
 }
 
 // Where there are no power tables.

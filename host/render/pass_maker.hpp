@@ -8,6 +8,7 @@
 
 #include "host/device/device.hpp"
 #include "host/render/device_scene.hpp"
+#include "host/render/emission_cells.hpp"
 #include "host/render/green_resampler.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/photon_tracer.hpp"
@@ -26,6 +27,9 @@ class PassMaker {
     void make(std::uint32_t pass, std::uint32_t photons);
     void make(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons);
 
+    // How photons start in the passes that are made from now on; until then anywhere on the lights, at random.
+    void set_emission(EmissionCells cells);
+
     const PassBuffers& buffers() const { return buffers_; }
     // As they stand in buffers().
     const PassSpectra& spectra() const { return spectra_; }
@@ -33,9 +37,11 @@ class PassMaker {
   private:
     void resample_tables();
     void sample_media();
+    const Device device_;
     const Scene& scene_;
     const DeviceScene& on_device_;
     std::optional<StratifiedWavelengths> strata_;
+    EmissionCells cells_;
     PassBuffers buffers_;
     PassSpectra spectra_;
     Kernel resample_;

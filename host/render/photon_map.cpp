@@ -41,7 +41,24 @@ void PhotonMap::reserve(std::uint32_t count) {
     flux_.copy_to(flux, used_);
     heads_ = heads;
     flux_ = flux;
+    if (note_paths_) {
+        const Buffer<std::uint32_t> paths(device_, name_ + " map paths", wanted);
+        paths_.copy_to(paths, used_);
+        paths_ = paths;
+    }
     capacity_ = wanted;
+}
+
+void PhotonMap::track_paths(bool on) {
+    paths_ = {};
+    note_paths_.reset();
+    if (!on) return;
+    paths_ = Buffer<std::uint32_t>(device_, name_ + " map paths", capacity_);
+    note_paths_.emplace(Program(device_, "score_photons.cl").kernel("note_paths"));
+}
+
+void PhotonMap::note_paths(const Buffer<std::uint32_t>& list, std::uint32_t count, std::uint32_t exits) {
+    if (note_paths_) note_paths_->launch(count, count, exits, used_, capacity_, list, paths_);
 }
 
 std::uint32_t PhotonMap::advance(std::uint32_t count) {

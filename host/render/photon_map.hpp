@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "host/device/device.hpp"
@@ -24,6 +25,14 @@ class PhotonMap {
     void reserve(std::uint32_t count);
 
     void clear() { used_ = 0; }
+
+    // From now on, or no longer, remembers which path each slot belongs to.
+    void track_paths(bool on);
+    // The count events of this list of paths will store at the next slots, exits each. Nothing where paths are not tracked.
+    // Asynchronous.
+    void note_paths(const Buffer<std::uint32_t>& list, std::uint32_t count, std::uint32_t exits);
+    const Buffer<std::uint32_t>& paths() const { return paths_; }  // by slot
+
     // Hands out count slots; returns how many of them lie beyond the capacity and are lost.
     std::uint32_t advance(std::uint32_t count);
 
@@ -40,6 +49,8 @@ class PhotonMap {
     SpatialHash* hash_ = nullptr;
     Buffer<PhotonHead> heads_;
     Buffer<Flux16> flux_;
+    std::optional<Kernel> note_paths_;  // where paths are tracked
+    Buffer<std::uint32_t> paths_;
 };
 
 }  // namespace stokes

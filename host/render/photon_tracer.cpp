@@ -39,7 +39,9 @@ PhotonTracer::PhotonTracer(const Device& device, const RayKernels& kernels, std:
       chunk_counts_(device, "list counts", chunks_of(paths)),
       totals_(device, "list totals", 1),
       sums_(device, "ledger sums", chunks_of(paths)) {
-    emit_ = Program(device, "emit_photons.cl").kernel("emit_photons");
+    const Program emission(device, "emit_photons.cl");
+    emit_ = emission.kernel("emit_photons");
+    emit_stratified_ = emission.kernel("emit_stratified");
     const Program tracing = kernels.program(device, "trace_rays.cl");
     trace_ = tracing.kernel("trace_closest");
     trace_probe_ = tracing.kernel("trace_probe");
@@ -64,8 +66,7 @@ PhotonTracer::PhotonTracer(const Device& device, const RayKernels& kernels, std:
 PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons,
                                   PhotonMaps& maps) {
     probes_traced_ = refused_slots_ = deposits_ = 0;
-    emit_.launch(photons, pass.constants, scene.light_count, scene.lights, scene.light_areas, scene.triangles,
-                 pass.photon_flux, rays_, flux_, ledgers_, alive_);
+    emit(scene, pass, photons);
     std::uint32_t count = photons, event = 0;
     for (; count > 0; ++event) {
         trace_.launch(count, alive_, count, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, rays_, hits_);
@@ -83,6 +84,15 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
         count = lists.alive;
     }
     return close_account(photons);
+}
+
+void PhotonTracer::emit(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons) {
+    if (pass.cell_count > 0)
+        emit_stratified_.launch(photons, pass.constants, pass.cell_count, pass.cells, pass.first_photons, scene.lights,
+                                scene.light_areas, scene.triangles, pass.photon_flux, rays_, flux_, ledgers_, alive_);
+    else
+        emit_.launch(photons, pass.constants, scene.light_count, scene.lights, scene.light_areas, scene.triangles,
+                     pass.photon_flux, rays_, flux_, ledgers_, alive_);
 }
 
 // Sorts the arrived photons into the lists alive, diffuse, fluorescence, elastic, branches; the rest has ended.
@@ -103,6 +113,7 @@ void PhotonTracer::scatter_at_surfaces(const DeviceScene& scene, const PassBuffe
     map.reserve(round.count);
     round.first_slot = map.used();
     round.slot_limit = map.capacity();
+    map.note_paths(diffuse_, round.count, 1);
     scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows,
                     scene.textures.records, scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_,
                     map.heads(), map.flux());
@@ -194,6 +205,7 @@ void PhotonTracer::deposit(const DeviceScene& scene, const PassBuffers& pass, Ev
     map.reserve(slots);
     round.first_slot = map.used();
     round.slot_limit = map.capacity();
+    map.note_paths(list_of(round), round.count, round.exits);
     deposit_.launch(round.count, round, pass.constants, scene.materials, pass.rows, scene.tables.shapes,
                     scene.integrated ? powers_ : scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(),
                     map.flux());
@@ -229,6 +241,7 @@ void PhotonTracer::walk_below_surfaces(const DeviceScene& scene, const PassBuffe
     WalkSlots slots{};
     for (std::uint32_t m = 0; m < 3; ++m) {
         maps[m].reserve(round.count);
+        maps[m].note_paths(elastic_, round.count, 1);
         slots.first[m] = maps[m].used();
         slots.limit[m] = maps[m].capacity();
     }

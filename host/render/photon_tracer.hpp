@@ -22,6 +22,10 @@ struct PassBuffers {
     Buffer<Flux16> radiance;     // [lights]
     bool both_branches = false;  // light below a surface goes both ways, by fluorophore and past it: chosen_branches()
     std::uint32_t exits = 1;     // of an event and component
+    // Where photons start; without cells anywhere on the lights, at random.
+    std::uint32_t cell_count = 0;
+    Buffer<EmissionCell> cells;
+    Buffer<std::uint32_t> first_photons;  // [cell_count + 1]
 };
 
 using PhotonMaps = std::array<PhotonMap, STOKES_MAP_COUNT>;  // by STOKES_MAP_*
@@ -47,6 +51,7 @@ class PhotonTracer {
     PhotonAccount trace(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons, PhotonMaps& maps);
 
   private:
+    void emit(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons);
     ListCounts make_lists(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);
     void scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
                              PhotonMap& map);
@@ -62,7 +67,7 @@ class PhotonTracer {
     PhotonAccount close_account(std::uint32_t photons);
 
     Device device_;
-    Kernel emit_, trace_, trace_probe_, classify_, count_, scan_, write_, scatter_;
+    Kernel emit_, emit_stratified_, trace_, trace_probe_, classify_, count_, scan_, write_, scatter_;
     Kernel sample_exits_, place_exits_, deposit_, retrace_fluorescence_, retrace_elastic_, retrace_exits_, fold_exits_, sum_;
     std::optional<Kernel> walk_, draw_exits_, integrate_;  // compiled when they are first needed
     Buffer<Ray> rays_;

@@ -3,14 +3,27 @@
 #include <algorithm>
 
 #include "host/core/error.hpp"
+#include "host/render/emission_trial.hpp"
 #include "host/render/radius.hpp"
+#include "host/render/wavelength_importance.hpp"
 
 namespace stokes {
 
 namespace {
 
-// Index of the trial pass, which no render reaches.
+// Index of the trial pass that finds the radius; no render reaches it.
 constexpr std::uint32_t trial_pass = 0xffffffffu;
+
+// Trial passes for the aiming of photons have the indices below, and at least this many photons together. The second half
+// of them starts where the first half found that they should.
+constexpr std::uint32_t least_trials = 4, most_trials = 32;
+constexpr std::uint32_t trial_photons = 1u << 20;
+
+// Share of the photons that start evenly spread in the trials' second half, and in the render.
+constexpr double even_share_of_trials = 0.3, even_share = 0.1;
+
+// The partition of the lights is no finer than this, nor than so many photons of a pass to a cell.
+constexpr std::uint32_t most_cells = 2048, photons_per_cell = 32;
 
 // Slots a map starts with; it grows with the first passes where that is too few.
 std::uint32_t first_capacity(std::uint32_t photons) { return photons + 1024; }
@@ -45,6 +58,11 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
     if (on_device_.has_fresnel) trace_seen_ = kernels.program(device, "see_surfaces.cl").kernel("trace_seen");
     first_radius_mm_ = scene.render.radius_mm ? *scene.render.radius_mm : find_first_radius();
+    if (chosen_emission(scene.render) == Emission::stratified)
+        pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_)).with_photons(photons_));
+    if (chosen_emission(scene.render) == Emission::aimed) pass_.set_emission(aimed_cells());
+    film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
+    device_.reset_stage_times();
 }
 
 PhotonMaps Renderer::make_maps() {
@@ -72,9 +90,35 @@ double Renderer::find_first_radius() {
     for (const PhotonMap& map : maps_)
         for (const PhotonHead& head : map.heads().download(map.used())) photons.push_back(head);
     const double radius_mm = first_radius_mm(whole, gather_.points().download(), photons);
-    film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
-    device_.reset_stage_times();
     return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
+}
+
+// By trial passes that leave nothing in the film: what their photons bring to the picture says where more should start. Their
+// wavelengths are drawn by importance, so that few passes see all of the light.
+EmissionCells Renderer::aimed_cells() {
+    const std::vector<EmittingLight> lights = emitting_lights(scene_, on_device_);
+    const RenderSettings& render = scene_.render;
+    const std::uint32_t trials = std::clamp(trial_photons / photons_, least_trials, most_trials);
+    const std::size_t cell_limit = std::clamp(photons_ / photons_per_cell, 1u, most_cells) + lights.size();
+    std::optional<StratifiedWavelengths> strata;
+    if (render.lambda_max_nm - render.lambda_min_nm + 1 > STOKES_WAVELENGTHS)
+        strata.emplace(render.lambda_min_nm, wavelength_importance(scene_));
+    EmissionTrial trial(device_, photons_);
+    EmissionCells cells = EmissionCells::even(lights).with_photons(photons_);
+    for (PhotonMap& map : maps_) map.track_paths(true);
+    for (std::uint32_t i = 0; i < trials; ++i) {
+        if (i == trials / 2)
+            cells = EmissionCells::aimed(lights, trial.samples(), even_share_of_trials, cell_limit).with_photons(photons_);
+        if (i == 0 || i == trials / 2) pass_.set_emission(cells);
+        const std::uint32_t pass = trial_pass - 1 - i;
+        pass_.make(strata ? strata->draw(render.seed, pass) : pass_wavelengths(render, pass), pass, photons_);
+        for (PhotonMap& map : maps_) map.clear();
+        tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
+        see_points(view_.camera());
+        trial.add(cells, on_device_, pass_.buffers(), maps_, view_.camera(), gather_.points(), on_device_.textures);
+    }
+    for (PhotonMap& map : maps_) map.track_paths(false);
+    return EmissionCells::aimed(lights, trial.samples(), even_share, cell_limit).with_photons(photons_);
 }
 
 double Renderer::radius_of(std::uint32_t pass) const {

@@ -7,6 +7,7 @@
 #include "host/image/film.hpp"
 #include "host/render/camera_view.hpp"
 #include "host/render/device_scene.hpp"
+#include "host/render/emission_cells.hpp"
 #include "host/render/gather.hpp"
 #include "host/render/ledger.hpp"
 #include "host/render/pass_maker.hpp"
@@ -41,6 +42,7 @@ class Renderer {
   private:
     PhotonMaps make_maps();
     double find_first_radius();
+    EmissionCells aimed_cells();
     void see_points(const CameraRecord& camera);
     GatherScene seen_scene() const;
     void see_maps(double radius_mm);

@@ -26,4 +26,17 @@ typedef struct LightRecord {
 } LightRecord;
 STOKES_ASSERT_SIZE(LightRecord, 80);
 
+// A part of where and whereto a light emits, with a share of the pass's photons: a box in the cube [0, 1]^4 that
+// lib/emission.clh maps onto the light, all of it evenly. Written by the host once per scene, as many as partition the
+// cubes of all lights.
+typedef struct EmissionCell {
+    float low[4], size[4];
+    float weight;         // factor on a photon's flux: probability of the box among all that the lights emit, over the
+                          // share of the photons that start there
+    unsigned int light;   // index into the LightRecord buffer
+    unsigned int stride;  // points of the cell's sequence for a pass: at least as many as photons start there
+    unsigned int pad;
+} EmissionCell;
+STOKES_ASSERT_SIZE(EmissionCell, 48);
+
 #endif

@@ -1,0 +1,198 @@
+#include "host/render/emission_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+#include <random>
+#include <tuple>
+
+namespace stokes {
+
+namespace {
+
+// Slices along a coordinate by which the worth of a cut is judged: two alone would not see what lies in the middle.
+constexpr std::size_t slices = 4;
+
+// A cell with fewer samples is not cut, and one counts this many samples of its parent's density beside its own.
+constexpr std::size_t least_samples = 48;
+constexpr double parent_samples = 12.0;
+
+// Cuts that lessen the root of the variance by a smaller share are not made.
+constexpr double least_gain = 1e-5;
+
+constexpr float smallest_edge = 0x1p-10f;
+
+struct Box {
+    std::uint32_t light = 0;
+    std::array<float, 4> low{0.0f, 0.0f, 0.0f, 0.0f}, size{1.0f, 1.0f, 1.0f, 1.0f};
+    double volume = 0.0;  // probability under random emission
+    double square = 0.0;  // share of the mean square
+    std::size_t begin = 0, end = 0;  // samples
+    std::size_t cut = 0;             // the coordinate along which to cut it
+    double gain = 0.0;
+};
+
+double root(double volume, double square) { return std::sqrt(volume * square); }
+
+class Partition {
+  public:
+    Partition(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples)
+        : lights_(lights), samples_(samples) {
+        std::stable_sort(samples_.begin(), samples_.end(),
+                         [](const EmissionSample& a, const EmissionSample& b) { return a.light < b.light; });
+        std::size_t at = 0;
+        for (std::uint32_t i = 0; i < lights.size(); ++i) {
+            Box box;
+            box.light = i;
+            box.volume = lights[i].probability;
+            box.begin = at;
+            while (at < samples_.size() && samples_[at].light == i) box.square += samples_[at++].square;
+            box.end = at;
+            if (!(box.volume > 0.0)) continue;
+            judge(box);
+            all_ += root(box.volume, box.square);
+            boxes_.push_back(box);
+        }
+    }
+
+    std::vector<Box> cut(std::size_t most) {
+        const auto less = [&](std::size_t a, std::size_t b) {
+            return boxes_[a].gain != boxes_[b].gain ? boxes_[a].gain < boxes_[b].gain : a > b;
+        };
+        std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(less)> queue(less);
+        for (std::size_t i = 0; i < boxes_.size(); ++i) queue.push(i);
+        while (!queue.empty() && boxes_.size() < most) {
+            const std::size_t i = queue.top();
+            queue.pop();
+            if (!(boxes_[i].gain > least_gain * all_)) break;
+            halve(i);
+            queue.push(i);
+            queue.push(boxes_.size() - 1);
+        }
+        return boxes_;
+    }
+
+  private:
+    // What a cut would gain along each coordinate, and the best.
+    void judge(Box& box) const {
+        box.gain = 0.0;
+        if (box.end - box.begin < least_samples) return;
+        const std::size_t dimensions = lights_[box.light].directions ? 4 : 2;
+        std::array<std::array<double, slices>, 4> square{}, count{};
+        for (std::size_t i = box.begin; i < box.end; ++i)
+            for (std::size_t d = 0; d < dimensions; ++d) {
+                const float along = (samples_[i].place[d] - box.low[d]) / box.size[d] * static_cast<float>(slices);
+                const auto slice = static_cast<std::size_t>(std::clamp(along, 0.0f, static_cast<float>(slices) - 1.0f));
+                square[d][slice] += samples_[i].square;
+                count[d][slice] += 1.0;
+            }
+        for (std::size_t d = 0; d < dimensions; ++d) {
+            if (box.size[d] <= smallest_edge) continue;
+            double after = 0.0;
+            for (std::size_t s = 0; s < slices; ++s)
+                after += root(box.volume / slices, damped(square[d][s], count[d][s], box.square / slices));
+            const double gain = root(box.volume, box.square) - after;
+            if (gain > box.gain) box.gain = gain, box.cut = d;
+        }
+    }
+
+    // A part's share of the square from its own samples and from what its parent lets expect.
+    static double damped(double square, double count, double expected) {
+        return (count * square + parent_samples * expected) / (count + parent_samples);
+    }
+
+    // Box i becomes its lower half, the upper half is added.
+    void halve(std::size_t i) {
+        const Box whole = boxes_[i];
+        const std::size_t d = whole.cut;
+        const float middle = whole.low[d] + 0.5f * whole.size[d];
+        const auto first = samples_.begin() + static_cast<std::ptrdiff_t>(whole.begin);
+        const auto last = samples_.begin() + static_cast<std::ptrdiff_t>(whole.end);
+        const auto upper = std::stable_partition(
+            first, last, [&](const EmissionSample& sample) { return sample.place[d] < middle; });
+        Box halves[2] = {whole, whole};
+        halves[0].end = halves[1].begin = static_cast<std::size_t>(upper - samples_.begin());
+        halves[1].low[d] = middle;
+        for (Box& half : halves) {
+            half.size[d] = 0.5f * whole.size[d];
+            half.volume = 0.5 * whole.volume;
+            double square = 0.0;
+            for (std::size_t k = half.begin; k < half.end; ++k) square += samples_[k].square;
+            half.square = damped(square, static_cast<double>(half.end - half.begin), 0.5 * whole.square);
+            judge(half);
+        }
+        boxes_[i] = halves[0];
+        boxes_.push_back(halves[1]);
+    }
+
+    const std::vector<EmittingLight>& lights_;
+    std::vector<EmissionSample> samples_;
+    std::vector<Box> boxes_;
+    double all_ = 0.0;
+};
+
+EmissionCell record_of(const Box& box, double share) {
+    EmissionCell cell{};
+    std::copy(box.low.begin(), box.low.end(), cell.low);
+    std::copy(box.size.begin(), box.size.end(), cell.size);
+    cell.light = box.light;
+    cell.weight = static_cast<float>(box.volume / share);
+    return cell;
+}
+
+}  // namespace
+
+EmissionCells EmissionCells::even(const std::vector<EmittingLight>& lights) {
+    return aimed(lights, {}, 1.0, lights.size());
+}
+
+EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights,
+                                   const std::vector<EmissionSample>& samples, double even_share,
+                                   std::size_t most_cells) {
+    std::vector<Box> boxes = Partition(lights, samples).cut(most_cells);
+    // Cells in order of place lie side by side in memory, so that neighbouring work-items do the same.
+    std::stable_sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
+        return std::tie(a.light, a.low) < std::tie(b.light, b.low);
+    });
+    double volume = 0.0, roots = 0.0;
+    for (const Box& box : boxes) {
+        volume += box.volume;
+        roots += root(box.volume, box.square);
+    }
+    EmissionCells cells;
+    for (Box& box : boxes) {
+        box.volume /= volume;
+        const double aimed = roots > 0.0 ? root(box.volume * volume, box.square) / roots : box.volume;
+        cells.shares_.push_back(even_share * box.volume + (1.0 - even_share) * aimed);
+        cells.records_.push_back(record_of(box, cells.shares_.back()));
+    }
+    return cells;
+}
+
+EmissionCells EmissionCells::with_photons(std::uint32_t photons) const {
+    EmissionCells cells = *this;
+    for (std::size_t c = 0; c < shares_.size(); ++c)
+        cells.records_[c].stride = static_cast<std::uint32_t>(std::floor(shares_[c] * photons)) + 1;
+    return cells;
+}
+
+// Systematic sampling: the shares side by side on a line of this length, and a photon at each whole number plus an offset.
+// The offset goes on by the golden section from pass to pass.
+std::vector<std::uint32_t> EmissionCells::first_photons(std::uint32_t seed, std::uint32_t pass,
+                                                        std::uint32_t photons) const {
+    std::seed_seq sequence{seed, 0xe3155u};
+    std::mt19937_64 generator(sequence);
+    const double start = static_cast<double>(generator() >> 11) * 0x1p-53;
+    const double offset = std::fmod(start + pass * 0.61803398874989485, 1.0);
+    std::vector<std::uint32_t> first(shares_.size() + 1, 0);
+    double sum = 0.0;
+    for (std::size_t c = 0; c + 1 < shares_.size(); ++c) {
+        sum += shares_[c];
+        first[c + 1] = static_cast<std::uint32_t>(std::clamp(std::floor(sum * photons + offset), 0.0, double(photons)));
+    }
+    first.back() = photons;
+    return first;
+}
+
+}  // namespace stokes

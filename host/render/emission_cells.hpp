@@ -1,0 +1,57 @@
+// Where photons start: a partition of all places and directions of the lights, by how many photons start in each part.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/shared/light.h"
+
+namespace stokes {
+
+// A photon of a trial pass: where it started and what it brought.
+struct EmissionSample {
+    std::uint32_t light = 0;
+    std::array<float, 4> place{};  // in the light's cube, as lib/emission.clh has it
+    // Square of its value in the picture, had it the flux of random emission, times how many photons of random emission it
+    // stands for, over their number in all trials: the sum over a part's samples estimates the part's share of the mean square.
+    double square = 0.0;
+};
+
+// One of the lights, as far as emission is concerned.
+struct EmittingLight {
+    double probability = 0.0;  // of a photon of random emission to be its own; together 1
+    bool directions = false;   // a surface, whose place has four coordinates; beams have two
+};
+
+class EmissionCells {
+  public:
+    EmissionCells() = default;
+
+    // A cell a light: evenly spread. Lights of probability 0 have none.
+    static EmissionCells even(const std::vector<EmittingLight>& lights);
+
+    // Cells that are small where the samples' squares differ, with photons in proportion to the root of each cell's mean
+    // square, which makes the variance of the picture least; but an even_share of the photons as even() spreads them, so that no
+    // photon weighs more than 1/even_share. At most most_cells, or even() where no sample has a value.
+    static EmissionCells aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
+                               double even_share, std::size_t most_cells);
+
+    // stride is left 0; it depends on the photons of a pass: with_photons.
+    const std::vector<EmissionCell>& records() const { return records_; }
+    // Share of the photons, in the order of records; their sum is 1.
+    const std::vector<double>& shares() const { return shares_; }
+
+    // The same, for passes of this many photons.
+    EmissionCells with_photons(std::uint32_t photons) const;
+
+    // Photons first[c] to first[c + 1] - 1 of the pass start in cell c; first[0] = 0, the last is photons. In the mean over
+    // seeds each cell has its share exactly, and in each pass the integer below or above.
+    std::vector<std::uint32_t> first_photons(std::uint32_t seed, std::uint32_t pass, std::uint32_t photons) const;
+
+  private:
+    std::vector<EmissionCell> records_;
+    std::vector<double> shares_;
+};
+
+}  // namespace stokes

@@ -1,0 +1,43 @@
+// Trial passes that find out where the light comes from that the camera sees, and aim the photons there.
+#pragma once
+
+#include "host/device/device.hpp"
+#include "host/render/device_scene.hpp"
+#include "host/render/emission_cells.hpp"
+#include "host/render/gather.hpp"
+#include "host/render/photon_tracer.hpp"
+#include "host/scene/scene.hpp"
+
+namespace stokes {
+
+std::vector<EmittingLight> emitting_lights(const Scene& scene, const DeviceScene& on_device);
+
+class EmissionTrial {
+  public:
+    EmissionTrial(const Device& device, std::uint32_t photons);
+
+    // Takes in a pass of that many photons that the tracer has traced from cells, into maps that tracked their paths; points:
+    // what the camera sees in it, in the order of its rays.
+    void add(const EmissionCells& cells, const DeviceScene& scene, const PassBuffers& pass, const PhotonMaps& maps,
+             const CameraRecord& camera, const Buffer<GatherPoint>& points, const DeviceTextures& textures);
+
+    // Of all passes so far.
+    std::vector<EmissionSample> samples() const;
+
+  private:
+    std::vector<double> path_scores(const PassBuffers& pass, const PhotonMaps& maps, const CameraRecord& camera,
+                                    const Buffer<GatherPoint>& points, const DeviceTextures& textures);
+
+    Device device_;
+    std::uint32_t photons_, passes_ = 0;
+    Kernel find_places_, score_photons_;
+    Buffer<std::uint32_t> cells_;
+    Buffer<float> scores_;
+    struct alignas(16) Place {
+        float at[4];
+    };
+    Buffer<Place> places_;
+    std::vector<EmissionSample> samples_;
+};
+
+}  // namespace stokes
