@@ -20,10 +20,10 @@ constexpr std::uint32_t least_trials = 4, most_trials = 32;
 constexpr std::uint32_t trial_photons = 1u << 20;
 
 // Share of the photons that start evenly spread in the trials' second half, and in the render.
-constexpr double even_share_of_trials = 0.3, even_share = 0.1;
+constexpr double even_share_of_trials = 0.3, even_share = 0.15;
 
 // The partition of the lights is no finer than this, nor than so many photons of a pass to a cell.
-constexpr std::uint32_t most_cells = 2048, photons_per_cell = 32;
+constexpr std::uint32_t most_cells = 1024, photons_per_cell = 64;
 
 // Slots a map starts with; it grows with the first passes where that is too few.
 std::uint32_t first_capacity(std::uint32_t photons) { return photons + 1024; }
