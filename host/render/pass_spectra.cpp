@@ -50,6 +50,7 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
         constants.chain[i] = static_cast<float>(wavelengths.chain[i]);
         constants.strata[i] = wavelengths.strata[i];
     }
+    constants.even_pixels = render.sampling == Sampling::plain ? 0 : 1;
     constants.stratified = wavelengths.stratified ? 1 : 0;
     for (std::size_t i = 0; i < level_shares.size(); ++i)
         constants.level_shares[i] = static_cast<float>(level_shares[i]);

@@ -3,19 +3,36 @@
 #include <algorithm>
 #include <numeric>
 
+#include "host/render/pass_numbers.hpp"
+
 namespace stokes {
 
 namespace {
 
-// Uniform in [0, 1), the same on every platform.
-double uniform_unit(std::mt19937_64& generator) {
-    return static_cast<double>(generator() >> 11) * 0x1p-53;
+// In each block of 128 passes, each level has its share of 128.
+constexpr int block_bits = 7;
+constexpr std::uint32_t passes_per_block = 1u << block_bits;
+
+std::uint32_t level_of(std::uint64_t seed, std::uint32_t position) {
+    double place = even_cell(seed, position, block_bits);
+    std::uint32_t level = 0;
+    while (level + 1 < level_shares.size() && place >= level_shares[level] * passes_per_block)
+        place -= level_shares[level++] * passes_per_block;
+    return level;
 }
 
-std::uint32_t draw_level(double u) {
-    std::uint32_t level = 0;
-    while (level + 1 < level_shares.size() && u >= level_shares[level]) u -= level_shares[level++];
-    return level;
+struct Turn {
+    std::uint32_t level;
+    std::uint32_t index;  // how many passes of this level come before
+};
+
+Turn turn_of(std::uint64_t seed, std::uint32_t pass) {
+    const std::uint32_t block = pass / passes_per_block, position = pass % passes_per_block;
+    const std::uint64_t block_seed = derived_seed(seed, block);
+    const std::uint32_t level = level_of(block_seed, position);
+    std::uint32_t index = block * static_cast<std::uint32_t>(level_shares[level] * passes_per_block);
+    for (std::uint32_t before = 0; before < position; ++before) index += level_of(block_seed, before) == level;
+    return {level, index};
 }
 
 }  // namespace
@@ -66,13 +83,13 @@ double StratifiedWavelengths::expected(int lambda_nm) const {
 }
 
 PassWavelengths StratifiedWavelengths::draw(std::uint32_t seed, std::uint32_t pass) const {
-    std::seed_seq sequence{seed, pass, 0x57a7a1u};
-    std::mt19937_64 generator(sequence);
-    const std::uint32_t level = draw_level(uniform_unit(generator));
-    const std::uint32_t per_band = STOKES_WAVELENGTHS >> level;
+    const std::uint64_t own_seed = derived_seed(seed, 0x57a7a1u);
+    const Turn turn = turn_of(derived_seed(own_seed, level_shares.size()), pass);
+    const std::uint64_t level_seed = derived_seed(own_seed, turn.level);
+    const std::uint32_t per_band = STOKES_WAVELENGTHS >> turn.level;
     std::array<double, STOKES_WAVELENGTHS> places;
     for (std::uint32_t i = 0; i < places.size(); ++i)
-        places[i] = i / per_band * per_band + per_band * uniform_unit(generator);
+        places[i] = i / per_band * per_band + per_band * even_number(derived_seed(level_seed, i), turn.index);
     std::sort(places.begin(), places.end());
 
     PassWavelengths result{};

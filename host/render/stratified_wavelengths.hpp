@@ -8,6 +8,10 @@
 //   sum over the set of g / m  estimates  the sum of g over all wavelengths, and
 //   sum over k different members of g / (m ... m joint_ratio(their strata))  the sum over all rows of k
 //   wavelengths.
+//
+// Over the passes of a render the numbers of sets in 1, 2, .. bands are as near their shares as they can be, and the sets
+// of a kind cover each stratum evenly: the mean over passes settles faster than that of independent ones, and each pass
+// by itself is drawn as if alone.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +23,7 @@
 namespace stokes {
 
 // How often a set is drawn in 1, 2, 4, 8 and 16 bands. The variance of shipped lamps on shipped fluorophores
-// is least where most sets have 16, and only pairs within a stratum suffer.
+// is least where most sets have 16, and only pairs within a stratum suffer. Multiples of 1/128.
 inline constexpr std::array<double, STOKES_STRATA_LEVELS> level_shares = {
     1.0 / 128.0, 1.0 / 128.0, 1.0 / 64.0, 7.0 / 64.0, 55.0 / 64.0};
 

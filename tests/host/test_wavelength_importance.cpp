@@ -162,7 +162,7 @@ TEST_CASE("a line of light is drawn about once a set", "[wavelength_importance]"
     CHECK(strata->expected(365) == Approx(1.0).epsilon(1e-12));
     Sample count;
     for (std::uint32_t pass = 0; pass < 2000; ++pass) {
-        const PassWavelengths w = strata->draw(1, pass);
+        const PassWavelengths w = strata->draw(pass, pass);
         count.add(static_cast<double>(std::count(w.set.begin(), w.set.end(), 365)));
     }
     CHECK(std::abs(count.z(1.0)) < 3.5);
@@ -213,9 +213,9 @@ TEST_CASE("the spectra of a pass have the weights of its wavelengths", "[wavelen
     }
 }
 
-// Lamp -> eye, and lamp -> fluorophore -> eye, in X, Y and Z: sets are drawn until the standard error is
-// below 0.1 % of the full sum. Those of one scene share their sets, and the seed is fixed: another one may have
-// a few of the two hundred sums beyond 3 standard errors.
+// Lamp -> eye, and lamp -> fluorophore -> eye, in X, Y and Z: sets are drawn, each with a seed of its own, until
+// the standard error is below 0.1 % of the full sum. Those of one scene share their sets: other seeds may have a
+// few of the two hundred sums beyond 3 standard errors.
 TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_importance]") {
     std::size_t sums = 0;
     for (const auto& [lamp_name, spectrum] : shipped_lamps()) {
@@ -240,7 +240,7 @@ TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_imp
             };
             for (std::uint32_t pass = 0; pass < 1000000 && (pass % 5000 != 0 || pass < 5000 || open());
                  ++pass) {
-                const PassWavelengths w = strata->draw(21, pass);
+                const PassWavelengths w = strata->draw(pass, 21 * pass);
                 const PairWeights weights = pair_weights(w);
                 for (std::size_t i = 0; i < 3; ++i) {
                     samples[i].add(elastic_estimate(w, elastic[i]));
@@ -258,6 +258,62 @@ TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_imp
         }
     }
     CHECK(sums > 150);
+}
+
+// Mean over 256 passes of a render against that over 256 independent sets, each sum's variance; the shipped lamps
+// and dots, 80 seeds.
+TEST_CASE("over passes the noise of wavelengths falls faster than that of independent sets",
+          "[wavelength_importance]") {
+    constexpr std::uint32_t seeds = 80, passes = 256;
+    const std::vector<Fluorophore> minerals_too = shipped_fluorophores();
+    const std::vector<Fluorophore> dots(minerals_too.begin(), minerals_too.begin() + 3);
+    for (const auto& [name, spectrum] : shipped_lamps()) {
+        const auto strata = stratified_wavelengths(lit(spectrum, dots));
+        const Values lamp = tabulated(spectrum);
+        std::vector<std::pair<Values, Values>> seen;
+        std::vector<double> full;
+        for (const Fluorophore& dot : dots)
+            for (const Values& matching : eye()) {
+                seen.emplace_back(product(lamp, tabulated(dot.excitation)),
+                                  product(tabulated(dot.emission), matching));
+                full.push_back(full_pairs(seen.back().first, seen.back().second));
+            }
+        std::vector<Values> elastic;
+        for (const Values& matching : eye()) {
+            elastic.push_back(product(lamp, matching));
+            full.push_back(sum_of(elastic.back()));
+        }
+        std::vector<Sample> alone(full.size()), together(full.size());
+        for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+            Values mean(full.size(), 0.0);
+            for (std::uint32_t pass = 0; pass < passes; ++pass) {
+                const auto add = [&](const PassWavelengths& w, const auto& take) {
+                    const PairWeights weights = pair_weights(w);
+                    for (std::size_t i = 0; i < seen.size(); ++i)
+                        take(i, pair_estimate(w, weights, seen[i].first, seen[i].second));
+                    for (std::size_t i = 0; i < elastic.size(); ++i)
+                        take(seen.size() + i, elastic_estimate(w, elastic[i]));
+                };
+                add(strata->draw(seed, pass),
+                    [&](std::size_t i, double value) { mean[i] += value / passes; });
+                add(strata->draw(1000 + seed * passes + pass, pass),
+                    [&](std::size_t i, double value) { alone[i].add(value); });
+            }
+            for (std::size_t i = 0; i < mean.size(); ++i) together[i].add(mean[i]);
+        }
+        double log_gain = 0.0, least = 1e9;
+        for (std::size_t i = 0; i < full.size(); ++i) {
+            if (full[i] == 0.0) continue;
+            const double gain = alone[i].variance() / passes / together[i].variance();
+            CAPTURE(name, i, gain);
+            CHECK(std::abs(together[i].z(full[i])) < 4.0);
+            log_gain += std::log(gain) / static_cast<double>(full.size());
+            least = std::min(least, gain);
+        }
+        CAPTURE(name, std::exp(log_gain), least);
+        CHECK(std::exp(log_gain) > 5.0);
+        CHECK(least > 2.5);
+    }
 }
 
 // Lamp -> fluorophore -> the same fluorophore -> eye: three wavelengths at once. With the weights of pairs
@@ -282,7 +338,7 @@ TEST_CASE("the mean over many sets is the full sum of light re-radiated twice", 
     }
     Sample exact, by_pairs;
     for (std::uint32_t pass = 0; pass < 250000; ++pass) {
-        const PassWavelengths w = strata->draw(8, pass);
+        const PassWavelengths w = strata->draw(pass, 8 * pass);
         double sum = 0.0, pair_sum = 0.0;
         for (std::size_t k = 2; k < 16; ++k)
             for (std::size_t j = 1; j < k; ++j)

@@ -1,10 +1,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "host/render/camera_view.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
+#include "tests/support/statistics.hpp"
 
 using namespace stokes;
 
@@ -29,11 +32,12 @@ Camera test_camera() {
     return camera;
 }
 
-std::vector<Ray> rays_of_pass(const CameraRecord& record, std::uint32_t pass_index) {
+std::vector<Ray> rays_of_pass(const CameraRecord& record, std::uint32_t pass_index, bool even = true) {
     CameraView view(test_device(), record);
     PassConstants pass{};
     pass.seed = 11;
     pass.pass = pass_index;
+    pass.even_pixels = even ? 1 : 0;
     const Buffer<PassConstants> constants(test_device(), "pass", std::vector<PassConstants>{pass});
     const Buffer<Ray> rays(test_device(), "rays", view.ray_count());
     view.make_rays(constants, rays);
@@ -48,6 +52,18 @@ glm::dvec2 film_point(const Camera& camera, int width, int height, const Ray& ra
     const double scale =
         0.5 * height / std::tan(glm::radians(0.5 * camera.vertical_fov_deg)) / glm::dot(d, forward);
     return {0.5 * width + glm::dot(d, right) * scale, 0.5 * height - glm::dot(d, up) * scale};
+}
+
+// Where in its pixel each ray goes through, by index of pixel.
+std::vector<glm::dvec2> places_in_pixels(int width, int height, std::uint32_t pass_index, bool even) {
+    Camera camera = test_camera();
+    const std::vector<Ray> rays = rays_of_pass(make_camera_record(camera, width, height), pass_index, even);
+    const std::vector<Uint2> pixels = pixels_of_rays(width, height);
+    std::vector<glm::dvec2> places(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        places[pixels[i].y * width + pixels[i].x] =
+            film_point(camera, width, height, rays[i]) - glm::dvec2(pixels[i].x, pixels[i].y);
+    return places;
 }
 
 }  // namespace
@@ -100,6 +116,58 @@ TEST_CASE("each ray has unit length and goes through its own pixel", "[camera][t
     // The mean of 777 uniforms is 0.5 with a standard error of 0.0104; four of them either side.
     CHECK(std::abs(mean_x - 0.5) < 0.042);
     CHECK(std::abs(mean_y - 0.5) < 0.042);
+}
+
+// 64 passes, from a multiple of 64 on: of each division of a pixel into 64 rectangles by halves, each rectangle has a
+// ray. Rays are single precision: within 1e-4 of a pixel.
+TEST_CASE("over passes a pixel's area is covered evenly", "[camera][tiny]") {
+    const int width = 9, height = 7;
+    for (const std::uint32_t first : {0u, 128u, 0xffffffc0u}) {
+        std::vector<std::vector<glm::dvec2>> places;
+        for (std::uint32_t i = 0; i < 64; ++i) places.push_back(places_in_pixels(width, height, first + i, true));
+        for (const double columns : {1.0, 4.0, 8.0, 16.0, 64.0}) {
+            const glm::dvec2 cells(columns, 64.0 / columns), slack = 1e-4 * cells;
+            int empty = 0;
+            for (std::size_t pixel = 0; pixel < places[0].size(); ++pixel) {
+                std::map<std::pair<int, int>, int> rays;  // by cell; beside an edge, in those on both sides
+                for (const std::vector<glm::dvec2>& of_pass : places) {
+                    const glm::dvec2 at = of_pass[pixel] * cells, low = glm::floor(at - slack),
+                                     high = glm::floor(at + slack);
+                    for (double x = low.x; x <= high.x; ++x)
+                        for (double y = low.y; y <= high.y; ++y) ++rays[{static_cast<int>(x), static_cast<int>(y)}];
+                }
+                for (int x = 0; x < static_cast<int>(cells.x); ++x)
+                    for (int y = 0; y < static_cast<int>(cells.y); ++y) empty += rays.count({x, y}) == 0;
+            }
+            CHECK(empty == 0);
+        }
+    }
+}
+
+// All passes together are wrong once in 1000.
+TEST_CASE("places in pixels are uniform over pixels", "[camera]") {
+    for (const std::uint32_t pass : {0u, 1u, 63u, 0xffffffffu}) {
+        std::vector<double> counts(256, 0.0);
+        for (const glm::dvec2& place : places_in_pixels(160, 120, pass, true)) {
+            const glm::dvec2 cell = glm::clamp(glm::floor(place * 16.0), 0.0, 15.0);
+            counts[static_cast<std::size_t>(cell.y * 16.0 + cell.x)] += 1.0;
+        }
+        CHECK(chi_square_uniform(counts) > sidak_level(1e-3, 4));
+    }
+}
+
+// Domain 5, the camera's: the first two of each pixel's four numbers.
+TEST_CASE("plain places are independent random numbers", "[camera][tiny]") {
+    const int width = 9, height = 7;
+    const std::uint32_t n = width * height;
+    const Buffer<float> buffer(test_device(), "uniforms", n * 4);
+    test_program("rng.cl").kernel("uniforms").launch(n, 11u, 3u, 5u, buffer, n);
+    const std::vector<float> uniforms = buffer.download();
+    const std::vector<glm::dvec2> places = places_in_pixels(width, height, 3, false);
+    for (std::size_t pixel = 0; pixel < n; ++pixel) {
+        CHECK(places[pixel].x == Approx(uniforms[pixel * 4]).margin(1e-4));
+        CHECK(places[pixel].y == Approx(uniforms[pixel * 4 + 1]).margin(1e-4));
+    }
 }
 
 TEST_CASE("passes jitter differently", "[camera][tiny]") {

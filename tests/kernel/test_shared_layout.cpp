@@ -67,7 +67,7 @@ using namespace stokes;
         F(PassConstants, to_z) F(PassConstants, chain) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
         F(PassConstants, offset_mm) F(PassConstants, transport) F(PassConstants, first_collision_only) \
-        F(PassConstants, stratified) F(PassConstants, pad0) F(PassConstants, strata) \
+        F(PassConstants, stratified) F(PassConstants, even_pixels) F(PassConstants, strata) \
         F(PassConstants, level_shares) F(PassConstants, pad1) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \

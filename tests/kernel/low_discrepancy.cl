@@ -1,0 +1,37 @@
+// Points one by one, for test_low_discrepancy.cpp.
+#include "lib/low_discrepancy.clh"
+
+__kernel void unscrambled_words(__global uint* words, uint first, uint n) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= n) return;
+    const uint index = first + i;
+    words[i * 4] = reverse_bits(index);
+    words[i * 4 + 1] = reverse_bits(sobol_word_1(index));
+    words[i * 4 + 2] = reverse_bits(sobol_word(index, sobol_directions_2));
+    words[i * 4 + 3] = reverse_bits(sobol_word(index, sobol_directions_3));
+}
+
+__kernel void points(uint first, uint seed, __global float4* all, __global float2* two, uint n) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= n) return;
+    all[i] = sobol4(first + i, seed);
+    two[i] = sobol2(first + i, seed);
+}
+
+__kernel void points_of_seeds(uint index, uint first_seed, __global float4* points, uint n) {
+    const uint i = (uint)get_global_id(0);
+    if (i < n) points[i] = sobol4(index, first_seed + i);
+}
+
+__kernel void shuffled(uint seed, __global uint* indices, uint n) {
+    const uint i = (uint)get_global_id(0);
+    if (i < n) indices[i] = shuffled_index(i, seed);
+}
+
+// For each seed, dimension 0 of two sequences at the same index.
+__kernel void joined(uint index, __global float2* out, uint n) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= n) return;
+    const uint a = mix_bits(2u * i), b = mix_bits(2u * i + 1u);
+    out[i] = (float2)(sobol2(shuffled_index(index, a), a).x, sobol2(shuffled_index(index, b), b).x);
+}
