@@ -1,5 +1,6 @@
 // Stage 1 of a pass: photons leave the lights.
 #include "lib/inline.clh"
+#include "lib/light_area.clh"
 #include "lib/light_sum.clh"
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
@@ -7,20 +8,6 @@
 #include "shared/pass.h"
 #include "shared/path.h"
 #include "shared/ray.h"
-
-// First index in [first, first + count) whose cumulative value exceeds u times the last one.
-FORCE_INLINE uint pick_area(__global const float* cumulative, uint first, uint count, float u) {
-    const float target = u * cumulative[first + count - 1u];
-    uint low = 0u, high = count - 1u;
-    while (low < high) {
-        const uint middle = (low + high) / 2u;
-        if (cumulative[first + middle] > target)
-            high = middle;
-        else
-            low = middle + 1u;
-    }
-    return low;
-}
 
 // Work-items: pass->photons, one a path.
 // Reads: lights [lights], light_areas [triangles of all surface lights, cumulative mm^2 within a light],

@@ -1,5 +1,6 @@
 // What the camera rays see: light that surfaces emit, and the density estimate over the photon maps.
 // Surfaces have a front only, the side of their outward normal; their back is black, unless they are two-sided.
+#include "lib/film.clh"
 #include "lib/fresnel.clh"
 #include "lib/gather.clh"
 #include "lib/inline.clh"
@@ -11,20 +12,6 @@
 #include "shared/pass.h"
 #include "shared/photon.h"
 #include "shared/ray.h"
-
-// Sixteen products, added in a fixed order.
-FORCE_INLINE float dot16(float16 a, float16 b) {
-    const float16 p = a * b;
-    const float8 q = p.lo + p.hi;
-    const float4 r = q.lo + q.hi;
-    return (r.x + r.z) + (r.y + r.w);
-}
-
-// Spectral radiance [W mm^-2 sr^-1 nm^-1] as a value of the film: X, Y, Z [cd/m^2], 0.
-FORCE_INLINE float4 film_value(float16 radiance, __global const PassConstants* pass) {
-    return (float4)(dot16(radiance, vload16(0, pass->to_x)), dot16(radiance, vload16(0, pass->to_y)),
-                    dot16(radiance, vload16(0, pass->to_z)), 0.0f);
-}
 
 // The maps whose photons light a material.
 FORCE_INLINE uint maps_of(MaterialRecord material) {
