@@ -35,8 +35,7 @@ inline const std::vector<ReferenceSetting> reference_settings = {
     {"prisms_545", "prisms.json", 535, 24000, 14.0},
     {"prisms_585", "prisms.json", 575, 24000, 14.0},
     {"prisms_655", "prisms.json", 643, 24000, 14.0},
-    {"sphere_rays", "sphere.json", 575, 24000, 8.0, Direct::rays},
-    {"prisms_585_rays", "prisms.json", 575, 24000, 14.0, Direct::rays}};
+    {"sphere_rays", "sphere.json", 575, 24000, 8.0, Direct::rays}};
 inline constexpr std::uint32_t reference_passes = 64;   // of a render
 inline constexpr std::uint32_t reference_renders = 24;  // their mean is the reference
 inline constexpr std::uint32_t first_reference_seed = 1000;
