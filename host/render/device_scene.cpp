@@ -187,6 +187,17 @@ struct LightTables {
     std::vector<double> surface_area_mm2;
 };
 
+void set_ball(LightRecord& record, const Mesh& mesh) {
+    glm::vec3 low(INFINITY), high(-INFINITY);
+    for (const glm::vec3& p : mesh.positions_mm) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::vec3 centre = 0.5f * (low + high);
+    record.px = centre.x, record.py = centre.y, record.pz = centre.z;
+    for (const glm::vec3& p : mesh.positions_mm) record.ball_mm = std::max(record.ball_mm, glm::length(p - centre));
+}
+
 // first_triangle: of each shape in the Triangle buffer.
 LightTables light_tables(const Scene& scene, const std::vector<double>& probability,
                          const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& first_triangle) {
@@ -200,6 +211,7 @@ LightTables light_tables(const Scene& scene, const std::vector<double>& probabil
         double area = 0.0;
         if (light.kind == LightKind::surface) {
             const auto shape = static_cast<std::size_t>(light.shape);
+            set_ball(record, scene.shapes[shape].mesh);
             record.kind = STOKES_LIGHT_SURFACE;
             record.first_triangle = first_triangle[shape];
             record.triangle_count = first_triangle[shape + 1] - first_triangle[shape];

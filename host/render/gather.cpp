@@ -3,7 +3,8 @@
 namespace stokes {
 
 Gather::Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera)
-    : camera_(camera),
+    : device_(device),
+      camera_(camera),
       points_(device, "points seen by the camera", std::size_t{camera.width} * camera.height) {
     const Program program(device, "gather_radiance.cl");
     collect_points_ = program.kernel("collect_points");
@@ -16,6 +17,16 @@ void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants
     collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes,
                            scene.materials, scene.emitted, scene.textures.records, scene.textures.texels,
                            scene.textures.uv, points_, film);
+}
+
+void Gather::add_direct_light(const DeviceScene& on_device, const GatherScene& scene, const Buffer<PassConstants>& pass,
+                              const Buffer<FilmValue>& film) {
+    const RayScene& rays = on_device.rays;
+    if (!add_direct_light_)
+        add_direct_light_.emplace(rays.kernels.program(device_, "direct_light.cl").kernel("add_direct_light"));
+    add_direct_light_->launch(pixels(), points_, pixels(), pass, rays.nodes, rays.blocks, rays.grid, scene.triangles,
+                              scene.shapes, on_device.light_count, on_device.lights, on_device.light_areas,
+                              scene.emitted, scene.spectra, scene.textures.records, film);
 }
 
 void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm) {

@@ -1,5 +1,8 @@
-// Light that reaches the camera: emitters seen directly, and the density estimate over the photon maps.
+// Light that reaches the camera: emitters seen directly, light that falls straight from the lights onto what is seen, and
+// the density estimate over the photon maps.
 #pragma once
+
+#include <optional>
 
 #include "host/device/device.hpp"
 #include "host/render/device_scene.hpp"
@@ -24,7 +27,7 @@ struct GatherScene {
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
     Buffer<Flux16> spectra;  // row i: reflectance of material i at the pass's wavelengths
-    Buffer<Flux16> emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]
+    Buffer<Flux16> emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]; beams: PassBuffers::radiance
     DeviceTextures textures;
 };
 
@@ -37,6 +40,11 @@ class Gather {
     // rays, hits: one per pixel, as CameraView makes and trace_closest_all or trace_seen find them. Asynchronous.
     void collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
                         const Buffer<Hit>& hits, const Buffer<FilmValue>& film);
+
+    // Adds the light that falls straight from the lights onto those points that are diffuse to the surface layer: what
+    // photons stored before their first event would bring. Asynchronous.
+    void add_direct_light(const DeviceScene& on_device, const GatherScene& scene, const Buffer<PassConstants>& pass,
+                          const Buffer<FilmValue>& film);
 
     // Weighs the points by how much of their disk of this radius lies on the surface, once a pass. Without it each
     // weighs one, or the exit_scale of its material. Asynchronous.
@@ -52,8 +60,10 @@ class Gather {
 
   private:
     std::uint32_t pixels() const { return camera_.width * camera_.height; }
+    Device device_;
     CameraRecord camera_;
     Kernel collect_points_, measure_disks_, gather_radiance_;
+    std::optional<Kernel> add_direct_light_;  // compiled when it is first needed
     Buffer<GatherPoint> points_;
 };
 

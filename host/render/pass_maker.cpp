@@ -31,6 +31,7 @@ PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene
     buffers_.radiance = Buffer<Flux16>(device, "radiance of the lights", scene.lights.size());
     buffers_.both_branches =
         scene.render.transport != Transport::walk && chosen_branches(scene.render) == Branches::both;
+    buffers_.store_direct = chosen_direct(scene.render) == Direct::photons;
     buffers_.exits = static_cast<std::uint32_t>(chosen_exits(scene.render));
     const DeviceTables& tables = on_device.tables;
     if (tables.values.size() > 0) resample_ = Program(device, "resample_tables.cl").kernel("resample_table");

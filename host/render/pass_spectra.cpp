@@ -35,6 +35,11 @@ std::uint32_t transport_code(Transport transport) {
                                                 : STOKES_TRANSPORT_WALK;
 }
 
+double section_area_mm2(const Light& beam) {
+    const double sides = glm::length(beam.half_u_mm) * glm::length(beam.half_v_mm);
+    return beam.section == BeamSection::disk ? M_PI * sides : 4.0 * sides;
+}
+
 PassConstants make_constants(const RenderSettings& render, const PassWavelengths& wavelengths, std::uint32_t pass,
                              std::uint32_t photons) {
     PassConstants constants{};
@@ -159,9 +164,8 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
         const Light& light = scene.lights[i];
         const double p = probabilities[i];
         result.photon_flux.push_back(starting(light.flux, wavelengths, p > 0.0 ? 1.0 / (p * photons) : 0.0));
-        const bool surface = light.kind == LightKind::surface;
-        result.radiance.push_back(
-            starting(light.flux, wavelengths, surface ? 1.0 / (M_PI * surface_area_mm2[i]) : 0.0));
+        const double spread = light.kind == LightKind::surface ? M_PI * surface_area_mm2[i] : section_area_mm2(light);
+        result.radiance.push_back(starting(light.flux, wavelengths, spread > 0.0 ? 1.0 / spread : 0.0));
     }
     return result;
 }

@@ -37,7 +37,7 @@ struct PassSpectra {
     PassConstants constants;           // all but offset_mm
     std::vector<Flux16> rows;          // SpectraLayout::row_count() rows
     // Per light, times the wavelengths' rarity: flux of one photon [W/nm], all lights' probabilities included, and
-    // radiance of its surface [W mm^-2 sr^-1 nm^-1], 0 for beams.
+    // radiance of its surface [W mm^-2 sr^-1 nm^-1], for beams the irradiance across them [W mm^-2 nm^-1].
     std::vector<Flux16> photon_flux, radiance;
 };
 

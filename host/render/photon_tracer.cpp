@@ -110,15 +110,16 @@ ListCounts PhotonTracer::make_lists(const DeviceScene& scene, const PassBuffers&
 void PhotonTracer::scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
                                        PhotonMap& map) {
     if (round.count == 0) return;
-    map.reserve(round.count);
+    const std::uint32_t slots = round.event > 0 || pass.store_direct ? round.count : 0;
+    map.reserve(slots);
     round.first_slot = map.used();
-    round.slot_limit = map.capacity();
-    map.note_paths(diffuse_, round.count, 1);
+    round.slot_limit = slots > 0 ? map.capacity() : 0;
+    map.note_paths(diffuse_, slots, 1);
     scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows,
                     scene.textures.records, scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_,
                     map.heads(), map.flux());
-    deposits_ += round.count;
-    refused_slots_ += map.advance(round.count);
+    deposits_ += slots;
+    refused_slots_ += map.advance(slots);
 }
 
 namespace {

@@ -83,6 +83,7 @@ double Renderer::find_first_radius() {
     PassBuffers plain = pass_.buffers();
     plain.both_branches = false;
     plain.exits = 1;
+    plain.store_direct = true;
     tracer_.trace(on_device_, plain, photons_, maps_);
     const CameraRecord whole = make_whole_record(scene_.camera, scene_.film.width, scene_.film.height);
     see_points(whole);
@@ -131,6 +132,8 @@ void Renderer::render_pass(std::uint32_t pass) {
     for (PhotonMap& map : maps_) map.clear();
     const PhotonAccount account = tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
     see_points(view_.camera());
+    if (!pass_.buffers().store_direct)
+        gather_.add_direct_light(on_device_, seen_scene(), pass_.buffers().constants, film_);
     see_maps(radius_mm);
     book_.add(account, image_weight_nm(scene_.render.lambda_min_nm, scene_.render.lambda_max_nm));
     ++passes_;

@@ -25,6 +25,9 @@ Scene spectral_scene() {
     surface.flux = ramp(1.0, 3.0);
     beam.kind = LightKind::beam;
     beam.flux = ramp(0.5, 0.0);
+    beam.section = BeamSection::rectangle;
+    beam.half_u_mm = {3.0, 0.0, 0.0};
+    beam.half_v_mm = {0.0, 0.0, 2.0};
     dark.flux = Spectrum::constant(0.0);
     scene.lights = {surface, beam, dark};
     Material grey, red;
@@ -73,15 +76,19 @@ TEST_CASE("the photons of a light carry its flux in the mean", "[pass_spectra]")
         }
 }
 
-// A diffuse emitter of flux Phi and area A has radiance Phi / (pi A); nobody looks into a beam.
-TEST_CASE("the radiance of an emitter is its flux over pi and its area", "[pass_spectra]") {
-    const Scene scene = spectral_scene();
+// A diffuse emitter of flux Phi and area A has radiance Phi / (pi A), a beam of section A the irradiance Phi / A.
+TEST_CASE("the radiance of an emitter is its flux over pi and its area, that of a beam its irradiance", "[pass_spectra]") {
+    Scene scene = spectral_scene();
     const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100);
+    scene.lights[1].section = BeamSection::disk;
+    const PassSpectra round = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100);
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
         const double lambda_nm = pass.constants.lambda_nm[k];
         const double flux = scene.lights[0].flux.at(lambda_nm);
         CHECK(static_cast<double>(pass.radiance[0].v[k]) == Approx(flux / (M_PI * 25.0)).epsilon(1e-6));
-        CHECK(pass.radiance[1].v[k] == 0.0f);
+        const double beam = scene.lights[1].flux.at(lambda_nm);
+        CHECK(static_cast<double>(pass.radiance[1].v[k]) == Approx(beam / 24.0).epsilon(1e-6));
+        CHECK(static_cast<double>(round.radiance[1].v[k]) == Approx(beam / (M_PI * 6.0)).epsilon(1e-6));
         CHECK(pass.radiance[2].v[k] == 0.0f);
     }
 }

@@ -20,12 +20,13 @@ namespace stokes {
 // A shipped scene in 16 x 12 blocks of pixels, in sixteen neighbouring wavelengths and under lamps that are
 // flat over them: all passes have the same wavelengths, so that what is left of the noise is that of photons
 // and of camera rays. Beams are half as wide, so that more of their photons are seen. Every render has the
-// same passes, so that the blur of their radii is the same in a test and in its reference.
+// same passes, so that the blur of their radii is the same in a test and in its reference; direct light by rays has none.
 struct ReferenceSetting {
     std::string name, scene_file;
     int lambda_min_nm;  // to lambda_min_nm + 15
     std::int64_t photons_per_pass;
     double radius_mm;
+    Direct direct = Direct::photons;
 };
 
 // The dots' emission peaks at 545, 585 and 655 nm: their light is excited and seen on its short side.
@@ -33,7 +34,8 @@ inline const std::vector<ReferenceSetting> reference_settings = {
     {"sphere", "sphere.json", 575, 24000, 8.0},
     {"prisms_545", "prisms.json", 535, 24000, 14.0},
     {"prisms_585", "prisms.json", 575, 24000, 14.0},
-    {"prisms_655", "prisms.json", 643, 24000, 14.0}};
+    {"prisms_655", "prisms.json", 643, 24000, 14.0},
+    {"sphere_rays", "sphere.json", 575, 24000, 8.0, Direct::rays}};
 inline constexpr std::uint32_t reference_passes = 64;   // of a render
 inline constexpr std::uint32_t reference_renders = 24;  // their mean is the reference
 inline constexpr std::uint32_t first_reference_seed = 1000;
@@ -55,6 +57,7 @@ inline Scene reference_scene(const ReferenceSetting& setting, std::uint32_t seed
     scene.render.radius_mm = setting.radius_mm;
     scene.render.alpha = 2.0 / 3.0;
     scene.render.seed = seed;
+    scene.render.direct = setting.direct;
     return scene;
 }
 

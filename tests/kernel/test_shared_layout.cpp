@@ -57,7 +57,7 @@ using namespace stokes;
     S(LightRecord) F(LightRecord, kind) F(LightRecord, first_triangle) F(LightRecord, triangle_count) \
         F(LightRecord, cumulative_probability) F(LightRecord, px) F(LightRecord, py) F(LightRecord, pz) \
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
-        F(LightRecord, pad0) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, pad1) \
+        F(LightRecord, ball_mm) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, pad1) \
         F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, pad2) \
     S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) \
     S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, medium) \

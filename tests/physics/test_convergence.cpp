@@ -12,7 +12,7 @@ constexpr int pixels = 16;
 // A diffuse floor under a sphere that emits: irradiance Phi h / (4 pi (h^2 + x^2)^(3/2)), smooth and known,
 // with curvature for the radius to blur. The range is sixteen integers, so that all passes have the same
 // wavelengths.
-Scene ball_over_floor(std::uint32_t seed) {
+Scene ball_over_floor(std::uint32_t seed, Direct direct) {
     Scene scene;
     scene.file = "convergence";
     scene.materials = {diffuse_material(reflectance), Material{}};
@@ -32,6 +32,7 @@ Scene ball_over_floor(std::uint32_t seed) {
     scene.render.radius_mm = 16.0;
     scene.render.photons_per_pass = 3000;
     scene.render.seed = seed;
+    scene.render.direct = direct;
     return scene;
 }
 
@@ -73,8 +74,8 @@ std::vector<double> doublings(double first, double last) {
     return counts;
 }
 
-double measured_slope(std::uint32_t seed, const std::vector<double>& counts) {
-    const Scene scene = ball_over_floor(seed);
+double measured_slope(std::uint32_t seed, const std::vector<double>& counts, Direct direct) {
+    const Scene scene = ball_over_floor(seed, direct);
     const std::vector<double> expected = truth(scene);
     Renderer renderer(test_device(), scene);
     std::vector<double> errors;
@@ -117,7 +118,7 @@ void check_convergence(double last, std::uint32_t seeds) {
     const std::vector<double> counts = doublings(8.0, last);
     const Slopes expected = expected_slopes(counts);
     Sample slope;
-    for (std::uint32_t seed = 1; seed <= seeds; ++seed) slope.add(measured_slope(seed, counts));
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) slope.add(measured_slope(seed, counts, Direct::photons));
     CAPTURE(slope.mean(), slope.standard_error(), expected.bias, expected.deviation);
     CHECK(slope.standard_error() < 0.03);
     CHECK(slope.mean() > std::min(expected.bias, expected.deviation) - 3.0 * slope.standard_error());
@@ -131,6 +132,17 @@ void check_convergence(double last, std::uint32_t seeds) {
 
 TEST_CASE("the error falls with the cube root of the passes", "[convergence]") {
     check_convergence(128.0, 8);
+}
+
+// All light here is direct: without photons nothing is blurred, and independent draws would give a slope of -1/2. Those of
+// a pixel are spread over the passes.
+TEST_CASE("the error of direct light by rays falls faster than the root of the passes", "[convergence]") {
+    const std::vector<double> counts = doublings(8.0, 128.0);
+    Sample slope;
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) slope.add(measured_slope(seed, counts, Direct::rays));
+    CAPTURE(slope.mean(), slope.standard_error());
+    CHECK(slope.mean() < -0.6);
+    CHECK(slope.standard_error() < 0.03);
 }
 
 TEST_CASE("the error falls with the cube root of up to 512 passes", "[convergence][.long]") {

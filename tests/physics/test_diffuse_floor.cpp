@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
@@ -64,8 +66,24 @@ TEST_CASE("a diffuse floor under irradiance E has radiance rho E / pi", "[floor]
         Scene scene = lit_floor(c.angle_deg, sloping);
         scene.render.photons_per_pass = c.photons;
         scene.render.radius_mm = c.radius_mm;
+        scene.render.direct = Direct::photons;
         const double cosine = std::cos(c.angle_deg * M_PI / 180.0);
         check_is_one(brightness(scene, sloping.scaled(reflectance * cosine / M_PI), 16), 0.01);
+    }
+}
+
+// The same without photons, to rounding, in each pass.
+TEST_CASE("a diffuse floor under irradiance E has radiance rho E / pi without noise by rays", "[floor]") {
+    for (const double angle_deg : {0.0, 55.0}) {
+        CAPTURE(angle_deg);
+        Scene scene = lit_floor(angle_deg, sloping);
+        scene.render.photons_per_pass = 100;
+        scene.render.direct = Direct::rays;
+        const double cosine = std::cos(angle_deg * M_PI / 180.0);
+        const Sample ratio = brightness(scene, sloping.scaled(reflectance * cosine / M_PI), 4);
+        CAPTURE(ratio.mean(), ratio.standard_error());
+        CHECK(ratio.mean() == Approx(1.0).epsilon(1e-5));
+        CHECK(ratio.standard_error() < 1e-5);
     }
 }
 
@@ -127,9 +145,11 @@ TEST_CASE("a rectangle that emits is seen with its radiance", "[floor]") {
 // its centre by at most r^2/8 * 6/h^2, the Laplacian under the sphere: 0.2 % for r = 4 and h = 80.
 TEST_CASE("a sphere that emits irradiates a floor by the form factor of a sphere", "[floor]") {
     const double height_mm = 80.0, edge_mm = 70.0;
-    for (const double x_mm : {60.0, 110.0}) {
-        CAPTURE(x_mm);
+    for (const auto& [x_mm, direct] : {std::pair(60.0, Direct::photons), std::pair(110.0, Direct::photons),
+                                       std::pair(60.0, Direct::rays), std::pair(110.0, Direct::rays)}) {
+        CAPTURE(x_mm, direct == Direct::rays);
         Scene scene = floor_scene();
+        scene.render.direct = direct;
         add_shape(scene, "lamp", 1, moved(make_sphere(20.0, 128), {0.0, height_mm, 0.0})).light = 0;
         Light lamp;
         lamp.name = "lamp";
@@ -137,6 +157,8 @@ TEST_CASE("a sphere that emits irradiates a floor by the form factor of a sphere
         lamp.flux = sloping.scaled(1e-2);
         scene.lights = {lamp};
         scene.camera = camera_above({x_mm, 0.0, 0.0}, 400.0, edge_mm);
+        // Half of a sphere's points, and more, face away from any other.
+        if (direct == Direct::rays) scene.film = {48, 48, {}};
         scene.render.photons_per_pass = 100000;
         scene.render.radius_mm = 4.0;
         double form = 0.0;  // mean over the square that is seen [1/mm^2]
