@@ -25,8 +25,8 @@ struct PassBuffers {
     bool store_direct = true;    // false: photons straight from a light are not stored at diffuse surfaces
     // Where photons start; without cells anywhere on the lights, at random.
     std::uint32_t cell_count = 0;
-    Buffer<EmissionCell> cells;
-    Buffer<std::uint32_t> first_photons;  // [cell_count + 1]
+    Buffer<EmissionCell> cells = {};
+    Buffer<std::uint32_t> first_photons = {};  // [cell_count + 1]
 };
 
 using PhotonMaps = std::array<PhotonMap, STOKES_MAP_COUNT>;  // by STOKES_MAP_*
