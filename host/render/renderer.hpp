@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "host/device/device.hpp"
 #include "host/image/film.hpp"
@@ -40,7 +41,10 @@ class Renderer {
 
   private:
     PhotonMaps make_maps();
+    void set_radii();
+    void make_trial_photons();
     double find_first_radius();
+    std::vector<PixelRadius> find_local_radii(double radius_mm);
     void see_points(const CameraRecord& camera);
     GatherScene seen_scene() const;
     void see_maps(double radius_mm);
