@@ -10,19 +10,25 @@
 
 // True where a photon could count for the point at this place of its tangent disk: the surface of its body that is met
 // first from above is within the height and the angle of shared/gather.h. Where another body is met before, its own
-// front is looked for, and failing that its back, which counts where it is two-sided.
+// front is looked for, and failing that its back, which counts where it is two-sided; but not where the other body
+// stands on it.
 FORCE_INLINE bool on_surface(BvhScene scene, __global const Triangle* triangles, uint body, float3 place, float3 normal,
                              float height) {
     const float3 from = place + normal * height;
     const Ray ray = {from.x, from.y, from.z, 0.0f, -normal.x, -normal.y, -normal.z, 2.0f * height};
     const BvhFilter all = {BVH_BOTH, 0u, 0};
     Hit hit = bvh_closest(scene, ray, all);
-    for (int facing = 0; facing < 2 && hit.triangle != STOKES_NONE && triangles[hit.triangle].body != body; ++facing) {
-        const BvhFilter own = {facing == 0 ? BVH_FRONT : BVH_BACK, body, triangles};
-        const Hit found = bvh_closest(scene, ray, own);
-        if (found.triangle != STOKES_NONE || facing == 1) hit = found;
-    }
     if (hit.triangle == STOKES_NONE) return false;
+    const uint other = triangles[hit.triangle].body;
+    if (other != body) {
+        const BvhFilter front = {BVH_FRONT, body, triangles}, back = {BVH_BACK, body, triangles};
+        const BvhFilter foot = {BVH_BACK, other, triangles};
+        hit = bvh_closest(scene, ray, front);
+        if (hit.triangle == STOKES_NONE) hit = bvh_closest(scene, ray, back);
+        if (hit.triangle == STOKES_NONE) return false;
+        const Hit standing = bvh_closest(scene, ray, foot);
+        if (standing.triangle != STOKES_NONE && fabs(standing.t - hit.t) < 0.01f * height) return false;
+    }
     return dot(seen_normal(triangles[hit.triangle], -normal), normal) > STOKES_GATHER_MIN_COSINE;
 }
 

@@ -106,6 +106,24 @@ TEST_CASE("another body close above does not count", "[measure_disks][tiny]") {
     CHECK(std::abs(edge.z(1.0 / share_inside(0.5))) < 4.0);
 }
 
+// A low plate of another body, closed, whose foot lies on the surface: no photon gets below it.
+TEST_CASE("what another body stands on is not on the surface", "[measure_disks]") {
+    Mesh both = make_rectangle(20.0, 20.0);
+    const Mesh plate = make_prism(4, 5.0, 0.1);
+    const auto first = static_cast<unsigned>(both.positions_mm.size());
+    float edge = 0.0f;  // the plate's reach along x
+    for (const glm::vec3& p : plate.positions_mm) {
+        both.positions_mm.push_back(p);
+        edge = std::max(edge, p.x);
+    }
+    for (const glm::uvec3& t : plate.triangles) both.triangles.push_back(t + glm::uvec3(first));
+    const GatherPoint point = point_at(double(edge) + 0.5, 0.0, 0.0);
+    const Sample sample = weights(both, point, 40000, 1.0f, plate.triangles.size());
+    CAPTURE(edge, sample.mean());
+    CHECK(sample.mean() > 1.02);
+    CHECK(sample.mean() < 1.0 / share_inside(0.5) + 4.0 * sample.standard_error());
+}
+
 TEST_CASE("the weight that a point has is kept as a factor", "[measure_disks][tiny]") {
     GatherPoint point = point_at(9.0, 0.0, 9.0);
     const Sample plain = weights(make_rectangle(20.0, 20.0), point, 50, 2.0f);
