@@ -212,11 +212,11 @@ FORCE_INLINE float16 let_through(const ExitPoint* exit_point, uint exit_index, c
 // Work-items: round.count events; their round.exits exits of round.component each stand from round.first_exit on.
 // Reads: materials, spectra (re-radiation, excitation, sigma_t, albedo), table_shapes and table16: the tables at the
 //   pass's wavelengths, or with STOKES_SAMPLER_INTEGRATED what integrate_power wrote for each exit; flux of the
-//   arriving photons [W/nm].
+//   arriving photons [W/nm]; points [paths], for the body that they entered.
 // Writes: the map's slots from round.first_slot on, one an exit: flux that leaves there (`paper`: eq. 3, 4 or 5),
 //   ExitPoint.kept and .event_light, ledgers (stored, dropped deposits, the leader of re-emitted light).
 __kernel void deposit_exits(EventRound round, __global const PassConstants* pass,
-                            __global const MaterialRecord* materials, __global const float16* spectra,
+                            __global const SurfacePoint* points, __global const MaterialRecord* materials, __global const float16* spectra,
                             __global const TableShape* table_shapes, __global const float16* table16,
                             __global ExitPoint* exits, __global const float16* flux, __global PathLedger* ledgers,
                             __global PhotonHead* heads, __global float16* map_flux) {
@@ -225,6 +225,7 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
     const uint first = round.first_exit + i * round.exits;
     const uint path = exits[first].path;
     __global const MaterialRecord* material = &materials[exits[first].material];
+    const uint body = points[path].body;
     __global PathLedger* ledger = &ledgers[path];
     const bool fluorescent = round.component == STOKES_MAP_FLUORESCENCE;
     LightHistory light = {ledger->conversions, ledger->history, 0.0f};
@@ -250,7 +251,7 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
         if (slot < round.slot_limit) {
             const float3 normal = (float3)(exit_point.nx, exit_point.ny, exit_point.nz);
             heads[slot] = (PhotonHead){exit_point.x, exit_point.y, exit_point.z,
-                                       kept.x * share > 0.0f && sound ? pack_normal(normal) : STOKES_EMPTY_SLOT};
+                                       kept.x * share > 0.0f && sound ? pack_normal(normal, body) : STOKES_EMPTY_SLOT};
             map_flux[slot] = leaving * share;
         }
         if (!found)

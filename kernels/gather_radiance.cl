@@ -44,6 +44,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
     point.pixel = at.y * camera.width + at.x;
     point.maps = 0u;
     point.weight = 1.0f;
+    point.radius_factor = 1.0f;
     point.reflected = (uint)(rays[i].ox != camera.position_x || rays[i].oy != camera.position_y ||
                              rays[i].oz != camera.position_z);
     if (hit.triangle != STOKES_NONE) {
@@ -57,6 +58,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
         point.ny = normal.y;
         point.nz = normal.z;
         point.material = shape.material;
+        point.body = t.body;
         const Textures textures = {texture_records, texels, uv};
         point.luminance = texture_luminance(textures, shape.material, hit);
         const float cos_in = -(normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz);
@@ -76,22 +78,26 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
     points[i] = point;
 }
 
-// Work-items: one per point; launched once per map. L = 1/(pi r^2) * sum over the map's photons of flux / pi
-// (eq. 6 of Kugita et al.), times the point's weight, for the surface map times the reflectance.
+// Work-items: one per point; launched once per map and class of radii: of points whose radius_factor is in
+// (largest_factor / 2, largest_factor], with a grid of radius_mm for the largest. L = 1/(pi r^2) * sum over the map's
+// photons of flux / pi (eq. 6 of Kugita et al.), times the point's weight, for the surface map times the reflectance.
 // Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
 // material i, without its texture), textures, pass (to_x, to_y, to_z).
 // Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
-__kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, HashGrid grid,
-                              __global const uint* cell_starts, __global const float* positions,
+__kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, float largest_factor,
+                              HashGrid grid, __global const uint* cell_starts, __global const float* positions,
                               __global const uint* normals, __global const float16* flux,
                               __global const float16* spectra, __global const TextureRecord* texture_records,
                               __global const PassConstants* pass, __global float4* film) {
     const uint i = (uint)get_global_id(0);
     if (i >= count || (points[i].maps & (1u << map)) == 0u) return;
+    const float factor = points[i].radius_factor / largest_factor;
+    if (!(factor > 0.5f && factor <= 1.0f)) return;
     const GatherPoint point = points[i];
-    const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux,
-                                 (float3)(point.x, point.y, point.z), (float3)(point.nx, point.ny, point.nz));
-    float16 radiance = sum * (point.weight * M_1_PI_F * M_1_PI_F / (grid.radius_mm * grid.radius_mm));
+    const float radius = grid.radius_mm * factor;
+    const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux, (float3)(point.x, point.y, point.z),
+                                 (float3)(point.nx, point.ny, point.nz), point.body, radius);
+    float16 radiance = sum * (point.weight * M_1_PI_F * M_1_PI_F / (radius * radius));
     if (map == STOKES_MAP_SURFACE)
         radiance *= textured_reflectance(texture_records, spectra, point.material, point.luminance);
     film[map * count + point.pixel] += film_value(radiance, pass);

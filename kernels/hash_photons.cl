@@ -2,7 +2,6 @@
 // STOKES_HASH_BUCKETS runs of keys, then by key within each. Chunks of slots count and scatter apart from one
 // another, so there are no atomics, and the order in a cell is the order of the slots whatever the device.
 #include "lib/hash_grid.clh"
-#include "lib/normal.clh"
 #include "shared/photon.h"
 
 // Work-items: slots. Reads heads[slots]. Writes keys[slots], STOKES_NONE for a slot without a photon.
@@ -99,7 +98,7 @@ __kernel void sort_buckets(__global const uint2* entries, __global const uint* b
 
 // Work-items: slots / 16, rounded up. Item i moves photons 16 i .. 16 i + 15 into cell order.
 // Reads heads[slots], flux[slots] [W/nm], order[photons], cell_starts[keys] = photons.
-// Writes positions: x, y and z [3][stride] [mm], normals[photons] (coarse_normals) and sorted_flux[photons]
+// Writes positions: x, y and z [3][stride] [mm], normals[photons] and sorted_flux[photons]
 // [W/nm].
 __kernel void permute_photons(__global const PhotonHead* heads, __global const float16* flux,
                               __global const uint* order, __global const uint* cell_starts, HashGrid grid,
@@ -109,16 +108,13 @@ __kernel void permute_photons(__global const PhotonHead* heads, __global const f
     const uint first = (uint)get_global_id(0) * 16u;
     if (first >= photons) return;
     const uint count = min(photons - first, 16u);
-    uint packed[16];
     for (uint i = 0u; i < count; ++i) {
         const uint slot = order[first + i];
         const PhotonHead head = heads[slot];
         positions[first + i] = head.x;
         positions[grid.stride + first + i] = head.y;
         positions[2u * grid.stride + first + i] = head.z;
-        packed[i] = head.normal;
+        normals[first + i] = head.normal;
         sorted_flux[first + i] = flux[slot];
     }
-    for (uint i = count; i < 16u; ++i) packed[i] = 0u;
-    vstore16(coarse_normals(vload16(0, packed)), 0, normals + first);
 }

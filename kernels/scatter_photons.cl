@@ -26,7 +26,7 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
     const float2 arriving = light_of(incident, pass);
     const uint slot = round.first_slot + i;
     if (slot < round.slot_limit) {
-        heads[slot] = (PhotonHead){point.x, point.y, point.z, pack_normal(normal)};
+        heads[slot] = (PhotonHead){point.x, point.y, point.z, pack_normal(normal, point.body)};
         map_flux[slot] = incident;
         add_light(&ledger->stored, arriving);
     }

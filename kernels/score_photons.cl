@@ -1,7 +1,6 @@
 // How much each photon of a trial pass adds to the picture, for the aiming of emission.
 #include "lib/inline.clh"
 #include "lib/film.clh"
-#include "lib/normal.clh"
 #include "lib/texture.clh"
 #include "lib/tiles.clh"
 #include "shared/camera.h"
@@ -11,7 +10,7 @@
 #include "shared/photon.h"
 
 // A photon is taken as seen where the point that the camera sees in its pixel is nearer than this many of the pixel's
-// widths on the surface.
+// widths on the surface, and of its body.
 #define SEEN_WIDTHS 3.0f
 
 // Work-items: count, the events of a round whose deposits stand in slots first_slot + i * exits + k, k < exits.
@@ -52,9 +51,9 @@ __kernel void score_photons(uint slots, uint map, CameraRecord camera, __global 
     if (!(x >= 0.0f && y >= 0.0f && x < (float)camera.width && y < (float)camera.height)) return;
 
     const GatherPoint point = points[ray_of_pixel((uint)x, (uint)y, camera.width, camera.height)];
-    if ((point.maps & (1u << map)) == 0u) return;
+    if ((point.maps & (1u << map)) == 0u || (heads[i].normal >> 24) != (point.body & 255u)) return;
     const float3 away = position - (float3)(point.x, point.y, point.z);
-    const float facing = fabs(dot(to, unpack_normal(heads[i].normal))) / depth;
+    const float facing = fabs(dot(to, (float3)(point.nx, point.ny, point.nz))) / depth;
     const float area = length(right) * length(down) * depth * depth / max(facing, 1e-3f);
     if (dot(away, away) > SEEN_WIDTHS * SEEN_WIDTHS * area) return;
     float16 light = flux[i] * (point.weight * M_1_PI_F);

@@ -70,7 +70,8 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
     }
 
     const bool out = fate == STOKES_FATE_ALIVE;
-    const PhotonHead head = {position.x, position.y, position.z, out ? pack_normal(normal) : STOKES_EMPTY_SLOT};
+    const PhotonHead head = {position.x, position.y, position.z,
+                             out ? pack_normal(normal, point.body) : STOKES_EMPTY_SLOT};
     fill_slot(fluorescence_heads, fluorescence_flux, slots.first[0] + i, slots.limit[0],
               out && component == STOKES_MAP_FLUORESCENCE, head, leaving);
     fill_slot(single_heads, single_flux, slots.first[1] + i, slots.limit[1], out && component == STOKES_MAP_SINGLE, head,

@@ -216,7 +216,7 @@ def print_tables(found, pairs):
             beside = f"{'1':>17} {'1':>17} {'1':>13} {'':>6}"
             if name != samplers.PLAIN:
                 beside = f"{plus(n, 'efficiency'):>17} {plus(n, 'passes_ratio'):>17} {plus(n, 'time_ratio'):>13} "
-                beside += f"{n['bias_sigma']:>6.2f}"
+                beside += f"{'-':>6}" if n["bias_sigma"] is None else f"{n['bias_sigma']:>6.2f}"
             print(f"{scene:12} {name:12} {beside}  {plus(n, 'slope')}")
         if any(math.isnan(n["slope_error"]) for n in samplers_of.values()):
             print(f"note: {scene}: the truth is too uncertain beside the curves: more --truth-passes")

@@ -1,5 +1,7 @@
 #include "host/render/gather.hpp"
 
+#include "host/render/local_radii.hpp"
+
 namespace stokes {
 
 Gather::Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera)
@@ -10,6 +12,9 @@ Gather::Gather(const Device& device, const RayKernels& kernels, const CameraReco
     collect_points_ = program.kernel("collect_points");
     measure_disks_ = kernels.program(device, "measure_disks.cl").kernel("measure_disks");
     gather_radiance_ = program.kernel("gather_radiance");
+    const Program counting(device, "count_photons.cl");
+    count_photons_ = counting.kernel("count_photons");
+    choose_radii_ = counting.kernel("choose_radii");
 }
 
 void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass,
@@ -29,14 +34,29 @@ void Gather::add_direct_light(const DeviceScene& on_device, const GatherScene& s
                               scene.emitted, scene.spectra, scene.textures.records, film);
 }
 
+void Gather::count_photons(std::uint32_t map, std::uint32_t level, const SpatialHash& photons,
+                           const Buffer<float>& counts) {
+    count_photons_.launch(pixels(), points_, pixels(), map, level, enough_photons, photons.grid(), photons.cell_starts(),
+                          photons.positions(), photons.normals(), photons.flux(), counts);
+}
+
+void Gather::set_radii(const std::vector<PixelRadius>& pixels) {
+    radii_ = {device_, "radii of pixels", pixels};
+    radius_classes_ = stokes::radius_classes(pixels);
+}
+
+void Gather::choose_radii() {
+    if (radii_.size() > 0) choose_radii_.launch(pixels(), radii_, pixels(), points_);
+}
+
 void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm) {
     measure_disks_.launch(pixels(), pixels(), radius_mm, pass, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles,
                           points_);
 }
 
-void Gather::add_map(std::uint32_t map, const SpatialHash& photons, const GatherScene& scene,
+void Gather::add_map(std::uint32_t map, float radius_class, const SpatialHash& photons, const GatherScene& scene,
                      const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film) {
-    gather_radiance_.launch(pixels(), points_, pixels(), map, photons.grid(), photons.cell_starts(),
+    gather_radiance_.launch(pixels(), points_, pixels(), map, radius_class, photons.grid(), photons.cell_starts(),
                             photons.positions(), photons.normals(), photons.flux(), scene.spectra,
                             scene.textures.records, pass, film);
 }

@@ -46,13 +46,27 @@ class Gather {
     void add_direct_light(const DeviceScene& on_device, const GatherScene& scene, const Buffer<PassConstants>& pass,
                           const Buffer<FilmValue>& film);
 
-    // Weighs the points by how much of their disk of this radius lies on the surface, once a pass. Without it each
-    // weighs one, or the exit_scale of its material. Asynchronous.
+    // Raises counts [count_levels][points], 0 to begin with, to the photons of a map that count towards each point
+    // within the radius of its hash: kernels/count_photons.cl. Levels in ascending order. Asynchronous.
+    void count_photons(std::uint32_t map, std::uint32_t level, const SpatialHash& photons, const Buffer<float>& counts);
+
+    // From now on, the radii that choose_radii gives the points, by pixel: width * height of them.
+    void set_radii(const std::vector<PixelRadius>& pixels);
+
+    // Powers of two: add_map gathers the points whose radius, over that of the pass, is at most one of them and above
+    // half of it. 1 alone without set_radii.
+    const std::vector<float>& radius_classes() const { return radius_classes_; }
+
+    // Gives the points the radii of set_radii, once a pass; without these nothing. Asynchronous.
+    void choose_radii();
+
+    // Weighs the points by how much of their disk lies on the surface, once a pass; radius_mm is that of the pass.
+    // Without it each weighs one, or the exit_scale of its material. Asynchronous.
     void measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm);
 
-    // Adds the light of one map (STOKES_MAP_*) at those points to the film's layer of the same number.
-    // Asynchronous.
-    void add_map(std::uint32_t map, const SpatialHash& photons, const GatherScene& scene,
+    // Adds the light of one map (STOKES_MAP_*) at the points of one radius class to the film's layer of the same number.
+    // photons: hashed for that many times the radius of the pass. Asynchronous.
+    void add_map(std::uint32_t map, float radius_class, const SpatialHash& photons, const GatherScene& scene,
                  const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film);
 
     // What collect_points found, one a pixel, in the order of the rays.
@@ -62,9 +76,11 @@ class Gather {
     std::uint32_t pixels() const { return camera_.width * camera_.height; }
     Device device_;
     CameraRecord camera_;
-    Kernel collect_points_, measure_disks_, gather_radiance_;
+    Kernel collect_points_, count_photons_, choose_radii_, measure_disks_, gather_radiance_;
     std::optional<Kernel> add_direct_light_;  // compiled when it is first needed
     Buffer<GatherPoint> points_;
+    Buffer<PixelRadius> radii_;
+    std::vector<float> radius_classes_ = {1.0f};
 };
 
 }  // namespace stokes

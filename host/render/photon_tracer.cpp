@@ -207,7 +207,7 @@ void PhotonTracer::deposit(const DeviceScene& scene, const PassBuffers& pass, Ev
     round.first_slot = map.used();
     round.slot_limit = map.capacity();
     map.note_paths(list_of(round), round.count, round.exits);
-    deposit_.launch(round.count, round, pass.constants, scene.materials, pass.rows, scene.tables.shapes,
+    deposit_.launch(round.count, round, pass.constants, points_, scene.materials, pass.rows, scene.tables.shapes,
                     scene.integrated ? powers_ : scene.tables.at_wavelengths, exits_, flux_, ledgers_, map.heads(),
                     map.flux());
     deposits_ += slots;

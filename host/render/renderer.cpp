@@ -4,6 +4,7 @@
 
 #include "host/core/error.hpp"
 #include "host/render/emission_trial.hpp"
+#include "host/render/local_radii.hpp"
 #include "host/render/radius.hpp"
 #include "host/render/wavelength_importance.hpp"
 
@@ -57,10 +58,7 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     const RayKernels& kernels = on_device_.rays.kernels;
     trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
     if (on_device_.has_fresnel) trace_seen_ = kernels.program(device, "see_surfaces.cl").kernel("trace_seen");
-    first_radius_mm_ = scene.render.radius_mm ? *scene.render.radius_mm : find_first_radius();
-    if (chosen_emission(scene.render) == Emission::stratified)
-        pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_)).with_photons(photons_));
-    if (chosen_emission(scene.render) == Emission::aimed) pass_.set_emission(aimed_cells());
+    set_up_passes();
     film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
     device_.reset_stage_times();
 }
@@ -71,10 +69,28 @@ PhotonMaps Renderer::make_maps() {
     return {map("fluorescence"), map("single scattering"), map("multiple scattering"), map("surface")};
 }
 
-// By a trial pass that leaves nothing in the film. Its photons have the same flux at every wavelength: a lamp of few
-// wavelengths might be dark at all of those that were drawn. The camera sees the whole picture: a crop has its radius.
-// What one photon stores in several places at once counts as one: it is no more light that found its own way.
-double Renderer::find_first_radius() {
+// By trial passes. The first radius is that of photons that start at random and are all stored, so that it does not depend on
+// how the scene is sampled. Local radii relate to it, whatever the scene's, but are those of the photons of its passes.
+void Renderer::set_up_passes() {
+    const RenderSettings& render = scene_.render;
+    const bool local = chosen_radii(render) == Radii::local;
+    double found_mm = 0.0;
+    if (!render.radius_mm || local) {
+        make_trial_photons(true);
+        found_mm = find_first_radius();
+    }
+    first_radius_mm_ = render.radius_mm.value_or(found_mm);
+    if (chosen_emission(render) == Emission::stratified)
+        pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_)).with_photons(photons_));
+    if (chosen_emission(render) == Emission::aimed) pass_.set_emission(aimed_cells());
+    if (!local) return;
+    make_trial_photons(pass_.buffers().store_direct);
+    gather_.set_radii(find_local_radii(found_mm));
+}
+
+// Photons have the same flux at every wavelength: a lamp of few wavelengths might be dark at all of those that were
+// drawn. What one photon stores in several places at once counts as one: it is no more light that found its own way.
+void Renderer::make_trial_photons(bool store_direct) {
     pass_.make(trial_pass, photons_);
     Flux16 even;
     std::fill(std::begin(even.v), std::end(even.v), 1.0f);
@@ -83,8 +99,12 @@ double Renderer::find_first_radius() {
     PassBuffers plain = pass_.buffers();
     plain.both_branches = false;
     plain.exits = 1;
-    plain.store_direct = true;
+    plain.store_direct = store_direct;
     tracer_.trace(on_device_, plain, photons_, maps_);
+}
+
+// The camera sees the whole picture: a crop has its radius.
+double Renderer::find_first_radius() {
     const CameraRecord whole = make_whole_record(scene_.camera, scene_.film.width, scene_.film.height);
     see_points(whole);
     std::vector<PhotonHead> photons;
@@ -120,6 +140,24 @@ EmissionCells Renderer::aimed_cells() {
     }
     for (PhotonMap& map : maps_) map.track_paths(false);
     return EmissionCells::aimed(lights, trial.samples(), even_share, cell_limit).with_photons(photons_);
+}
+
+// From the points of this picture, be it a crop: photons are counted about them, so that a crop has the radii of its part
+// of the whole.
+std::vector<PixelRadius> Renderer::find_local_radii(double radius_mm) {
+    see_points(view_.camera());
+    const Buffer<float> counts(device_, "photons about points",
+                               std::vector<float>(std::size_t{count_levels} * view_.ray_count(), 0.0f));
+    float counted_mm = least_count_factor * static_cast<float>(radius_mm);
+    for (std::uint32_t level = 0; level < count_levels; ++level, counted_mm *= 2.0f)
+        for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
+            const PhotonMap& map = maps_[m];
+            if (map.used() == 0) continue;
+            hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
+                                counted_mm);
+            gather_.count_photons(m, level, hash_, counts);
+        }
+    return pixel_radii(gather_.points().download(), counts.download(), view_.camera().width, view_.camera().height);
 }
 
 double Renderer::radius_of(std::uint32_t pass) const {
@@ -159,13 +197,16 @@ GatherScene Renderer::seen_scene() const {
 
 // Adds the photons to the film, map by map.
 void Renderer::see_maps(double radius_mm) {
+    gather_.choose_radii();
     gather_.measure_disks(on_device_, pass_.buffers().constants, static_cast<float>(radius_mm));
     for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
         const PhotonMap& map = maps_[m];
         if (map.used() == 0) continue;
-        hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
-                            static_cast<float>(radius_mm));
-        gather_.add_map(m, hash_, seen_scene(), pass_.buffers().constants, film_);
+        for (const float radius_class : gather_.radius_classes()) {
+            hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
+                                radius_class * static_cast<float>(radius_mm));
+            gather_.add_map(m, radius_class, hash_, seen_scene(), pass_.buffers().constants, film_);
+        }
     }
 }
 

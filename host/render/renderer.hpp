@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "host/device/device.hpp"
 #include "host/image/film.hpp"
@@ -41,8 +42,11 @@ class Renderer {
 
   private:
     PhotonMaps make_maps();
+    void set_up_passes();
+    void make_trial_photons(bool store_direct);
     double find_first_radius();
     EmissionCells aimed_cells();
+    std::vector<PixelRadius> find_local_radii(double radius_mm);
     void see_points(const CameraRecord& camera);
     GatherScene seen_scene() const;
     void see_maps(double radius_mm);

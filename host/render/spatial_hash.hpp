@@ -33,7 +33,7 @@ class SpatialHash {
     const Buffer<std::uint32_t>& cell_starts() const { return cell_starts_; }
     // x, y and z, each [grid().stride] [mm].
     const Buffer<float>& positions() const { return positions_; }
-    // By coarse_normals of kernels/lib/normal.clh.
+    // As PhotonHead has them.
     const Buffer<std::uint32_t>& normals() const { return normals_; }
     // [W/nm]
     const Buffer<Flux16>& flux() const { return flux_; }

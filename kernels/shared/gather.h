@@ -4,9 +4,9 @@
 
 #include "limits.h"
 
-// A photon counts towards a point when it is nearer than the radius, its normal is within 57 degrees of the
-// point's, and it is not further from the tangent plane than this fraction of the radius: so no light comes
-// through a thin wall, round an edge or down from a step. The cosine lies midway between those of a hexagon's
+// A photon counts towards a point when it is nearer than the point's radius, its normal is within 57 degrees of the
+// point's, it is not further from the tangent plane than this fraction of the radius, and it lies on the same body: so
+// no light comes through a thin wall, round an edge, down from a step or from a sheet close above. The cosine lies midway between those of a hexagon's
 // corner, 0.5, and of a cuboctahedron's edge, 0.577: normals are rounded by up to 0.007 (lib/normal.clh), and
 // all edges of a regular solid must turn out alike.
 #define STOKES_GATHER_MIN_COSINE 0.54f
@@ -28,7 +28,16 @@ typedef struct GatherPoint {
     float weight;
     unsigned int reflected;  // 1: seen in a reflection; 0: the point lies on the pixel's own ray
     float luminance;         // of the material's texture there, in [0, 1]; 0 without one
+    float radius_factor;     // its radius over that of the pass, > 0: 1 (collect_points), or of its own (choose_radii)
+    unsigned int body;       // Triangle.body
 } GatherPoint;
-STOKES_ASSERT_SIZE(GatherPoint, 48);
+STOKES_ASSERT_SIZE(GatherPoint, 56);
+
+// A pixel's own radius. Written by the host once per scene, read by choose_radii.
+typedef struct PixelRadius {
+    float factor;           // over that of the pass, > 0
+    unsigned int material;  // of the surface it holds for, or STOKES_NONE
+} PixelRadius;
+STOKES_ASSERT_SIZE(PixelRadius, 8);
 
 #endif

@@ -18,7 +18,7 @@
 // Written by scatter_diffuse and deposit_exits, read by the hash build.
 typedef struct PhotonHead {
     float x, y, z;        // position on the surface [mm]
-    unsigned int normal;  // the surface's outward normal, packed by lib/normal.clh, or STOKES_EMPTY_SLOT
+    unsigned int normal;  // the surface's outward normal and its body, by lib/normal.clh, or STOKES_EMPTY_SLOT
 } PhotonHead;
 STOKES_ASSERT_SIZE(PhotonHead, 16);
 

@@ -1,11 +1,13 @@
 """The plot."""
 
+import math
+
 import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot, ticker  # noqa: E402
 
-COLOURS = ("#555555", "#2a6fbb", "#d9822b", "#3a8f4d", "#a0539b", "#b5413b")
+COLOURS = ("#555555", "#2a6fbb", "#d9822b", "#3a8f4d", "#a0539b", "#b5413b", "#6b6f1d")
 
 
 def draw(scenes, file):
@@ -18,11 +20,12 @@ def draw(scenes, file):
         for axis, across, label in zip(row, ("passes", "processor_s"), ("passes", "processor time [s]")):
             for colour, (sampler, numbers) in zip(COLOURS, samplers.items()):
                 curve = numbers["layers"]["whole"]
+                errors = curve["relative_rmse_error"]
                 slope = f"{sampler}: slope {numbers['slope']:.2f} ± {numbers['slope_error']:.2f}"
                 axis.errorbar(
                     curve[across],
                     curve["relative_rmse"],
-                    curve["relative_rmse_error"],
+                    errors if any(map(math.isfinite, errors)) else None,  # none: the truth is too uncertain
                     color=colour,
                     marker="o",
                     markersize=3,

@@ -30,13 +30,10 @@ glm::vec3 normal_at(float x, float y) {
                                     -0.52f * std::sin(0.1f * x) * std::cos(0.13f * y), 1.0f));
 }
 
-// Octahedral, for normals that point up (kernels/lib/normal.clh).
-std::uint32_t pack_up(const glm::vec3& n) {
-    const float scale = 1.0f / (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z));
-    const auto quantised = [&](float c) {
-        return static_cast<std::uint32_t>(std::lround((c * scale + 1.0f) * 32767.0f));
-    };
-    return quantised(n.x) | (quantised(n.y) << 16);
+// Of body 0 (kernels/lib/normal.clh).
+std::uint32_t pack(const glm::vec3& n) {
+    const auto quantised = [](float c) { return static_cast<std::uint32_t>(std::lround(c * 127.0f)) & 255u; };
+    return quantised(n.x) | (quantised(n.y) << 8) | (quantised(n.z) << 16);
 }
 
 // clustered: 7 of 10 photons lie at the bright side of a nephroid, the caustic of parallel light in a cylinder,
@@ -58,7 +55,7 @@ Photons make_photons(std::uint32_t slots, bool clustered, float radius_mm) {
             y = 0.5f * sheet_mm + edge * (3.0f * std::sin(t) - std::sin(3.0f * t));
         }
         const bool empty = i % 8 == 5;
-        photons.heads.push_back({x, y, height_at(x, y), empty ? STOKES_EMPTY_SLOT : pack_up(normal_at(x, y))});
+        photons.heads.push_back({x, y, height_at(x, y), empty ? STOKES_EMPTY_SLOT : pack(normal_at(x, y))});
         Flux16 flux;
         for (float& v : flux.v) v = unit(random);
         photons.flux.push_back(flux);
@@ -76,7 +73,7 @@ std::vector<GatherPoint> make_points(std::uint32_t edge) {
         const float y = sheet_mm * (static_cast<float>(py) + 0.5f) / static_cast<float>(edge);
         const glm::vec3 n = normal_at(x, y);
         points.push_back(
-            {x, y, height_at(x, y), py * edge + px, n.x, n.y, n.z, 0, 1u << STOKES_MAP_SURFACE, 1.0f, 0, 0});
+            {x, y, height_at(x, y), py * edge + px, n.x, n.y, n.z, 0, 1u << STOKES_MAP_SURFACE, 1.0f, 0, 0, 1.0f, 0});
     }
     return points;
 }
@@ -170,7 +167,7 @@ class MapBench {
     }
     void gather() {
         const auto count = static_cast<std::uint32_t>(points_.size());
-        gather_.launch(count, points_on_device_, count, std::uint32_t{STOKES_MAP_SURFACE}, hash_.grid(),
+        gather_.launch(count, points_on_device_, count, std::uint32_t{STOKES_MAP_SURFACE}, 1.0f, hash_.grid(),
                        hash_.cell_starts(), hash_.positions(), hash_.normals(), hash_.flux(), spectra_,
                        textures_, pass_, film_);
         setting_.device.finish();

@@ -33,21 +33,6 @@ std::uint32_t grid_row(const HashGrid& grid, std::uint32_t y, std::uint32_t z) {
     return (h ^ (h >> 16)) & grid.row_mask;
 }
 
-// As coarse_normals of kernels/lib/normal.clh.
-std::uint32_t coarse_normal(std::uint32_t packed) {
-    float u = static_cast<float>(static_cast<int>(packed & 0xffffu) - 32767) / 32767.0f;
-    float v = static_cast<float>(static_cast<int>(packed >> 16) - 32767) / 32767.0f;
-    const float w = 1.0f - std::fabs(u) - std::fabs(v);
-    const float fold = -w > 0.0f ? -w : 0.0f;
-    u -= std::copysign(fold, u);
-    v -= std::copysign(fold, v);
-    const float scale = 127.0f / std::sqrt(u * u + v * v + w * w);
-    const auto byte = [&](float c) {
-        return static_cast<std::uint32_t>(static_cast<int>(c * scale + 128.5f) - 128) & 255u;
-    };
-    return byte(u) | (byte(v) << 8) | (byte(w) << 16);
-}
-
 struct Runs {
     std::uint32_t begin[4], end[4];
 };
@@ -79,6 +64,7 @@ struct Query {
     float radius_squared, height;
     const float *px, *py, *pz;
     const std::uint32_t* normals;
+    std::uint32_t body;  // in the highest byte
 };
 
 #if defined(TWIN_AVX512)
@@ -97,7 +83,8 @@ struct Finder {
           my(_mm512_set1_ps(q.ny / 127.0f)),
           mz(_mm512_set1_ps(q.nz / 127.0f)),
           radius_squared(_mm512_set1_ps(q.radius_squared)),
-          height(_mm512_set1_ps(q.height)) {}
+          height(_mm512_set1_ps(q.height)),
+          body(_mm512_set1_epi32(static_cast<int>(q.body))) {}
 
     // Lists those of the photons i .. i + 15 below end that count.
     int append(const Query& q, int i, int end, int* list, int count) const {
@@ -115,12 +102,14 @@ struct Finder {
         in = _mm512_mask_cmp_ps_mask(in, distance, radius_squared, _CMP_LT_OQ);
         in = _mm512_mask_cmp_ps_mask(in, _mm512_abs_ps(above), height, _CMP_LT_OQ);
         in = _mm512_mask_cmp_ps_mask(in, cosine, _mm512_set1_ps(STOKES_GATHER_MIN_COSINE), _CMP_GT_OQ);
+        in = _mm512_mask_cmplt_epu32_mask(in, _mm512_xor_si512(packed, body), _mm512_set1_epi32(1 << 24));
         const __m512i index = _mm512_add_epi32(_mm512_set1_epi32(i),
                                                _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
         _mm512_storeu_si512(list + count, _mm512_maskz_compress_epi32(in, index));
         return count + __builtin_popcount(in);
     }
     __m512 x, y, z, nx, ny, nz, mx, my, mz, radius_squared, height;
+    __m512i body;
 };
 
 struct Sum {
@@ -156,7 +145,8 @@ struct Finder {
           my(_mm256_set1_ps(q.ny / 127.0f)),
           mz(_mm256_set1_ps(q.nz / 127.0f)),
           radius_squared(_mm256_set1_ps(q.radius_squared)),
-          height(_mm256_set1_ps(q.height)) {}
+          height(_mm256_set1_ps(q.height)),
+          body(_mm256_set1_epi32(static_cast<int>(q.body))) {}
 
     int append(const Query& q, int i, int end, int* list, int count) const {
         const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(q.px + i), x);
@@ -173,12 +163,15 @@ struct Finder {
         const __m256 in = _mm256_and_ps(
             _mm256_and_ps(_mm256_cmp_ps(distance, radius_squared, _CMP_LT_OQ), _mm256_cmp_ps(size, height, _CMP_LT_OQ)),
             _mm256_cmp_ps(cosine, _mm256_set1_ps(STOKES_GATHER_MIN_COSINE), _CMP_GT_OQ));
+        const __m256i of_body =
+            _mm256_cmpeq_epi32(_mm256_srli_epi32(_mm256_xor_si256(packed, body), 24), _mm256_setzero_si256());
         unsigned mask =
-            static_cast<unsigned>(_mm256_movemask_ps(in)) & (end - i >= lanes ? 0xffu : (1u << (end - i)) - 1u);
+            static_cast<unsigned>(_mm256_movemask_ps(_mm256_and_ps(in, _mm256_castsi256_ps(of_body)))) & (end - i >= lanes ? 0xffu : (1u << (end - i)) - 1u);
         for (; mask != 0; mask &= mask - 1) list[count++] = i + __builtin_ctz(mask);
         return count;
     }
     __m256 x, y, z, nx, ny, nz, mx, my, mz, radius_squared, height;
+    __m256i body;
 };
 
 struct Sum {
@@ -212,7 +205,8 @@ struct Finder {
             const float cosine = (byte(24) * q.nx + byte(16) * q.ny + byte(8) * q.nz) / 127.0f;
             list[count] = k;
             count += dx * dx + dy * dy + dz * dz < q.radius_squared &&
-                     std::fabs(dx * q.nx + dy * q.ny + dz * q.nz) < q.height && cosine > STOKES_GATHER_MIN_COSINE;
+                     std::fabs(dx * q.nx + dy * q.ny + dz * q.nz) < q.height && cosine > STOKES_GATHER_MIN_COSINE &&
+                     (q.normals[k] ^ q.body) < 1u << 24;
         }
         return count;
     }
@@ -335,7 +329,6 @@ void MapTwin::permute(const PhotonHead* heads, const Flux16* flux) {
             normals[i] = head.normal;
             sorted[i] = flux[slot];
         }
-        for (std::size_t i = begin; i < end; ++i) normals[i] = coarse_normal(normals[i]);
     });
 }
 
@@ -351,7 +344,8 @@ Flux16 MapTwin::sum_flux(const GatherPoint& point) const {
                       positions_.get(),
                       positions_.get() + grid_.stride,
                       positions_.get() + 2 * std::size_t{grid_.stride},
-                      normals_.get()};
+                      normals_.get(),
+                      point.body << 24};
     const Finder finder(query);
     const Runs runs = key_runs(grid_, point);
     Sum sum;

@@ -38,8 +38,11 @@ std::vector<float> part(const std::vector<float>& rgb, int x0, int y0) {
 // Photons, wavelengths and radii are the same; the rays alone lie elsewhere in their pixels. What that makes is well
 // below what a shift by one pixel does.
 TEST_CASE("a crop is its part of the picture, and of no other place in it", "[crop]") {
+    const Radii radii = GENERATE(Radii::one, Radii::local);
+    CAPTURE(static_cast<int>(radii));
     Scene scene = small_scene(Transport::conserving);
     scene.render.radius_mm = 12.0;
+    scene.render.radii = radii;
     const RgbLayers whole = render(scene, width, height, {});
     const RgbLayers crop = render(scene, crop_width, crop_height,
                                   {static_cast<double>(left) / width, static_cast<double>(top) / height,

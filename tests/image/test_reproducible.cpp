@@ -41,6 +41,21 @@ TEST_CASE("a picture has the same bits for any work-group size", "[reproducible]
     CHECK(sum > 0.0);
 }
 
+TEST_CASE("a picture with local radii has the same bits for any work-group size, and others than with one radius",
+          "[reproducible]") {
+    Scene scene = small_scene();
+    const FilmImage one = rendered(scene, 64, {0, 1});
+    scene.render.radii = Radii::local;
+    const FilmImage first = rendered(scene, 64, {0, 1});
+    const FilmImage second = rendered(scene, 16, {0, 1});
+    bool different = false;
+    for (std::size_t c = 0; c < component_count; ++c) {
+        CHECK(same_bits(first.xyz[c], second.xyz[c]));
+        different = different || !same_bits(first.xyz[c], one.xyz[c]);
+    }
+    CHECK(different);
+}
+
 TEST_CASE("a picture has the same bits for every shape of the ray kernels", "[reproducible]") {
     const auto same = [](Transport transport, std::initializer_list<RayShape> shapes) {
         const Scene scene = small_scene(transport);

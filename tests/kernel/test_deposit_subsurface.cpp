@@ -164,7 +164,7 @@ Deposits deposit(const SubsurfaceArrivals& a, const std::vector<ExitPoint>& give
     const Buffer<Flux16> map_flux = on_device(std::vector<Flux16>(slots, constant_flux(-1.0f)));
     Program(test_device(), "deposit_subsurface.cl")
         .kernel("deposit_exits")
-        .launch(count, round, pass_on_device(9), on_device(materials),
+        .launch(count, round, pass_on_device(9), on_device(a.points), on_device(materials),
                 on_device(conserving_spectra()), on_device(tables.shapes), on_device(tables.at_wavelengths), exits, on_device(a.flux), ledgers,
                 heads, map_flux);
     return {exits.download(), ledgers.download(), heads.download(), map_flux.download()};
@@ -228,9 +228,8 @@ void check_deposits(const SubsurfaceArrivals& a, std::uint32_t component) {
             CHECK(head.normal == STOKES_EMPTY_SLOT);
             CHECK(ledger.stored.energy == 0.0f);
         } else {
-            const std::uint32_t packed = pack_normal_twin({exit_point.nx, exit_point.ny, exit_point.nz});
-            CHECK(std::abs(int(head.normal & 0xffff) - int(packed & 0xffff)) <= 1);
-            CHECK(std::abs(int(head.normal >> 16) - int(packed >> 16)) <= 1);
+            CHECK(same_normal(head.normal, {exit_point.nx, exit_point.ny, exit_point.nz}));
+            CHECK(head.normal >> 24 == (a.points[exit_point.path].body & 255u));
             CHECK(ledger.missed_exits == 0);
             CHECK(double(ledger.stored.energy) == Approx(expected.kept).epsilon(5e-6));
         }

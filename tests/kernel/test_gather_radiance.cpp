@@ -21,6 +21,7 @@ constexpr float exit_scale = 1.3f, smooth_eta = 2.0f;  // of smooth_translucent
 struct Photon {
     glm::dvec3 position, normal;
     float flux = 1.0f;  // at the first wavelength; 1 + k/8 times that at wavelength k
+    std::uint32_t body = 0;
 };
 
 // A point for the camera to see: a triangle whose first vertex it is, seen head on.
@@ -29,6 +30,7 @@ struct Seen {
     std::uint32_t material = white;
     std::uint32_t light = STOKES_NONE;
     bool from_behind = false, missed = false;
+    std::uint32_t body = 0;
 };
 
 float spectrum(int k) {
@@ -54,8 +56,10 @@ PassConstants pass_constants() {
 // Points in a row, one pixel each, over a camera whose rays the tests write themselves.
 class Bench {
   public:
-    Bench(const std::vector<Seen>& seen, const std::vector<Photon>& photons, float radius_mm)
-        : count_(static_cast<std::uint32_t>(seen.size())),
+    // direct: rays start at the camera, and so go their own way to the points.
+    Bench(const std::vector<Seen>& seen, const std::vector<Photon>& photons, float radius_mm, bool direct = false)
+        : direct_(direct),
+          count_(static_cast<std::uint32_t>(seen.size())),
           gather_(test_device(), {}, camera()),
           hash_(test_device(), "test", static_cast<std::uint32_t>(photons.size())),
           film_(test_device(), "film", std::vector<FilmValue>(4 * seen.size(), FilmValue{0, 0, 0, 0})),
@@ -65,7 +69,20 @@ class Bench {
     }
 
     void collect() { gather_.collect_points(scene_, pass_, rays_, hits_, film_); }
-    void add(std::uint32_t map) { gather_.add_map(map, hash_, scene_, pass_, film_); }
+    // Points get that many times the radius each; the surface map is gathered class by class.
+    void run_with(const std::vector<float>& factors, const std::vector<Seen>& seen, const std::vector<Photon>& photons,
+                  float radius_mm) {
+        std::vector<PixelRadius> pixels;
+        for (std::size_t i = 0; i < seen.size(); ++i) pixels.push_back({factors[i], seen[i].material});
+        gather_.set_radii(pixels);
+        collect();
+        gather_.choose_radii();
+        for (const float radius_class : gather_.radius_classes()) {
+            set_photons(photons, radius_class * radius_mm);
+            gather_.add_map(STOKES_MAP_SURFACE, radius_class, hash_, scene_, pass_, film_);
+        }
+    }
+    void add(std::uint32_t map) { gather_.add_map(map, 1.0f, hash_, scene_, pass_, film_); }
     void run() {
         collect();
         for (std::uint32_t map = 0; map < STOKES_MAP_COUNT; ++map) add(map);
@@ -96,9 +113,10 @@ class Bench {
             const glm::vec3 p(s.position), e1(glm::normalize(glm::cross(other, s.normal)) * 2.0);
             const glm::vec3 e2(glm::cross(s.normal, glm::dvec3(e1)));
             const glm::vec3 d(s.normal * (s.from_behind ? 1.0 : -1.0));
-            triangles.push_back({p.x, p.y, p.z, i, e1.x, e1.y, e1.z, 0, e2.x, e2.y, e2.z, 0});
+            triangles.push_back({p.x, p.y, p.z, i, e1.x, e1.y, e1.z, s.body, e2.x, e2.y, e2.z, 0});
             shapes.push_back({s.material, s.light});
-            rays.push_back({p.x - d.x, p.y - d.y, p.z - d.z, 0.0f, d.x, d.y, d.z, INFINITY});
+            const glm::vec3 from = direct_ ? glm::vec3(0.0f) : p - d;
+            rays.push_back({from.x, from.y, from.z, 0.0f, d.x, d.y, d.z, INFINITY});
             hits.push_back({1.0f, 0.0f, 0.0f, s.missed ? STOKES_NONE : i});
         }
         std::vector<MaterialRecord> materials(6);
@@ -129,7 +147,7 @@ class Bench {
         glm::vec3 low(0.0f), high(0.0f);
         for (const Photon& photon : photons) {
             const glm::vec3 p(photon.position);
-            heads.push_back({p.x, p.y, p.z, pack_normal_twin(photon.normal)});
+            heads.push_back({p.x, p.y, p.z, pack_normal_twin(photon.normal, photon.body)});
             Flux16 value;
             for (int k = 0; k < 16; ++k) value.v[k] = photon.flux * spectrum(k);
             flux.push_back(value);
@@ -144,6 +162,7 @@ class Bench {
         test_device().finish();
     }
 
+    bool direct_;
     std::uint32_t count_;
     Gather gather_;
     SpatialHash hash_;
@@ -172,7 +191,7 @@ Expected expected_light(const Seen& seen, const std::vector<Photon>& photons, do
         const double turned = STOKES_GATHER_MIN_COSINE - glm::dot(photon.normal, seen.normal);
         if (far < 2e-5 && high < 2e-5 && turned < 0.008 && (far > -2e-5 || high > -2e-5 || turned > -0.008))
             result.decided = false;
-        if (far < 0.0 && high < 0.0 && turned < 0.0) {
+        if (far < 0.0 && high < 0.0 && turned < 0.0 && photon.body % 256 == seen.body % 256) {
             sum += photon.flux;
             ++result.found;
         }
@@ -209,12 +228,14 @@ void random_surface(std::uint32_t photon_count, std::uint32_t point_count, std::
         photon.normal = glm::normalize(photon.normal + 0.7 * random_direction(generator));
         photon.position = stored(photon.position + 0.3 * (uniform(generator) - 0.5) * photon.normal);
         photon.flux = static_cast<float>(0.5 + uniform(generator));
+        photon.body = i % 5 == 0 ? 3 : 256;
         photons.push_back(photon);
     }
     for (std::uint32_t i = 0; i < point_count; ++i) {
         Seen s;
         place(i % 2 == 0, s.position, s.normal);
         s.material = i % 3 == 0 ? grey : white;
+        s.body = i % 4 == 1 ? 259 : 0;
         seen.push_back(s);
     }
 }
@@ -253,6 +274,55 @@ TEST_CASE("the gather sums the photons that a double-precision search finds", "[
 TEST_CASE("the gather agrees with the search for few and for many photons a point", "[gather]") {
     check_against_all(20000, 400, 0.3f);
     check_against_all(20000, 100, 2.5f);  // more than the list of photons found takes at once
+}
+
+TEST_CASE("points with radii of all classes each agree with the search", "[gather]") {
+    std::vector<Photon> photons;
+    std::vector<Seen> seen;
+    random_surface(20000, 400, photons, seen);
+    const float classes[] = {0.5f, 0.50001f, 0.7f, 1.0f, 1.00001f, 1.4f, 2.0f, 2.5f, 3.99f, 4.0f};
+    std::vector<float> factors;
+    for (std::size_t i = 0; i < seen.size(); ++i) factors.push_back(classes[i % 10]);
+    const float radius = 0.4f;
+    Bench bench(seen, photons, radius, true);
+    bench.run_with(factors, seen, photons, radius);
+    const std::vector<FilmValue> film = bench.film();
+    const std::vector<GatherPoint> points = bench.points();
+    std::size_t decided = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        CHECK(points[i].radius_factor == factors[i]);
+        const Expected expected = expected_light(seen[i], photons, static_cast<double>(radius * factors[i]));
+        if (!expected.decided) continue;
+        ++decided;
+        const FilmValue& value = film[STOKES_MAP_SURFACE * seen.size() + i];
+        REQUIRE(value.x == Approx(expected.x).epsilon(1e-5));
+        REQUIRE(value.y == Approx(expected.y).epsilon(1e-5));
+        REQUIRE(value.z == Approx(expected.z).epsilon(1e-5));
+    }
+    CHECK(decided > seen.size() / 4);
+}
+
+TEST_CASE("reflections and other materials keep the radius of the pass", "[gather][tiny]") {
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    const std::vector<Seen> seen = {{{0.0, 0.0, -1.0}, up, white}, {{0.5, 0.0, -1.0}, up, white}, {{0.0, 0.0, -1.0}, up, grey}};
+    Bench bench(seen, {}, 1.0f);
+    std::vector<Seen> at_set_up = seen;
+    at_set_up[2].material = white;
+    bench.run_with({2.0f, 2.0f, 2.0f}, at_set_up, {}, 1.0f);
+    const std::vector<GatherPoint> points = bench.points();
+    CHECK(points[0].radius_factor == 2.0f);
+    CHECK(points[1].radius_factor == 1.0f);
+    CHECK(points[2].radius_factor == 1.0f);
+}
+
+TEST_CASE("photons of another body do not count", "[gather][tiny]") {
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    std::vector<Seen> seen(2, {{0.0, 0.0, 0.0}, up, white});
+    seen[1].body = 7;
+    Bench bench(seen, {{{0.1, 0.0, 0.01}, up, 1.0f, 7}}, 1.0f);
+    bench.run();
+    CHECK(bench.x(STOKES_MAP_SURFACE, 0) == 0.0);
+    CHECK(bench.x(STOKES_MAP_SURFACE, 1) > 0.0);
 }
 
 // Flux per area E on a white diffuse plane: radiance E / pi. 4000 photons a point, 200 points: the mean has a

@@ -27,12 +27,15 @@ GatherPoint point_at(double x, double y, double z) {
     point.ny = 1.0f;
     point.maps = 1u << STOKES_MAP_SURFACE;
     point.weight = 1.0f;
+    point.radius_factor = 1.0f;
     return point;
 }
 
 // Weights of count pixels that all see the same point of the mesh, its normal +y.
-Sample weights(const Mesh& mesh, GatherPoint point, std::uint32_t count, float radius_mm) {
-    const std::vector<Triangle> triangles = triangles_of(mesh);
+// The mesh's last triangles are those of another body.
+Sample weights(const Mesh& mesh, GatherPoint point, std::uint32_t count, float radius_mm, std::size_t others = 0) {
+    std::vector<Triangle> triangles = triangles_of(mesh);
+    for (std::size_t i = triangles.size() - others; i < triangles.size(); ++i) triangles[i].body = 1;
     const Bvh bvh = build_bvh(triangles, {16, BvhBounds::counts});
     std::vector<GatherPoint> given;
     for (std::uint32_t pixel = 0; pixel < count; ++pixel) {
@@ -81,6 +84,44 @@ TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, i
         CHECK(std::abs(sample.z(1.0 / c.share)) < 4.0);
         if (c.share < 1.0) CHECK(sample.standard_error() < 0.03);
     }
+}
+
+TEST_CASE("a point's own radius is that of its disk", "[measure_disks]") {
+    GatherPoint point = point_at(9.0, 0.0, 0.0);
+    CHECK(weights(make_rectangle(20.0, 20.0), point, 200, 1.0f).mean() == 1.0);
+    point.radius_factor = 2.0f;
+    const Sample sample = weights(make_rectangle(20.0, 20.0), point, 40000, 1.0f);
+    CHECK(std::abs(sample.z(1.0 / share_inside(0.5))) < 4.0);
+}
+
+// A sheet of another body close above is not the point's surface, and hides nothing of it.
+TEST_CASE("another body close above does not count", "[measure_disks][tiny]") {
+    Mesh two = make_rectangle(20.0, 20.0);
+    const Mesh above = make_rectangle(20.0, 20.0);
+    for (const glm::vec3& p : above.positions_mm) two.positions_mm.push_back(p + glm::vec3(15.0f, 0.1f, 0.0f));
+    for (const glm::uvec3& t : above.triangles) two.triangles.push_back(t + glm::uvec3(4u));
+    const GatherPoint point = point_at(6.0, 0.0, 0.0);
+    CHECK(weights(two, point, 50, 3.0f, above.triangles.size()).mean() == 1.0);
+    const Sample edge = weights(two, point_at(9.5, 0.0, 0.0), 20000, 1.0f, above.triangles.size());
+    CHECK(std::abs(edge.z(1.0 / share_inside(0.5))) < 4.0);
+}
+
+// A low plate of another body, closed, whose foot lies on the surface: no photon gets below it.
+TEST_CASE("what another body stands on is not on the surface", "[measure_disks]") {
+    Mesh both = make_rectangle(20.0, 20.0);
+    const Mesh plate = make_prism(4, 5.0, 0.1);
+    const auto first = static_cast<unsigned>(both.positions_mm.size());
+    float edge = 0.0f;  // the plate's reach along x
+    for (const glm::vec3& p : plate.positions_mm) {
+        both.positions_mm.push_back(p);
+        edge = std::max(edge, p.x);
+    }
+    for (const glm::uvec3& t : plate.triangles) both.triangles.push_back(t + glm::uvec3(first));
+    const GatherPoint point = point_at(double(edge) + 0.5, 0.0, 0.0);
+    const Sample sample = weights(both, point, 40000, 1.0f, plate.triangles.size());
+    CAPTURE(edge, sample.mean());
+    CHECK(sample.mean() > 1.02);
+    CHECK(sample.mean() < 1.0 / share_inside(0.5) + 4.0 * sample.standard_error());
 }
 
 TEST_CASE("the weight that a point has is kept as a factor", "[measure_disks][tiny]") {

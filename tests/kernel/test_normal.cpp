@@ -29,64 +29,64 @@ std::vector<glm::dvec3> directions(std::size_t count) {
     return result;
 }
 
+// Normals of bodies 0, 1, 2 ..
 std::vector<std::uint32_t> pack(const std::vector<glm::dvec3>& normals) {
     std::vector<Float4> data;
-    for (const glm::dvec3& n : normals)
+    std::vector<std::uint32_t> bodies;
+    for (const glm::dvec3& n : normals) {
+        bodies.push_back(static_cast<std::uint32_t>(data.size()));
         data.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z), 0.0f});
+    }
     const Buffer<Float4> input(test_device(), "normals", data);
+    const Buffer<std::uint32_t> body_buffer(test_device(), "bodies", bodies);
     const Buffer<std::uint32_t> packed(test_device(), "packed", data.size());
     test_program("normal.cl")
         .kernel("pack_normals")
-        .launch(data.size(), input, packed, std::uint32_t(data.size()));
+        .launch(data.size(), input, body_buffer, packed, std::uint32_t(data.size()));
     return packed.download();
 }
 
-std::vector<Float4> unpack(const char* kernel, const std::vector<std::uint32_t>& packed) {
+std::vector<Float4> components(const std::vector<std::uint32_t>& packed, std::uint32_t body) {
     const Buffer<std::uint32_t> input(test_device(), "packed", packed);
     const Buffer<Float4> normals(test_device(), "normals", packed.size());
     test_program("normal.cl")
-        .kernel(kernel)
-        .launch(packed.size(), input, normals, std::uint32_t(packed.size()));
+        .kernel("packed_components")
+        .launch(packed.size() / 16, input, body, normals, std::uint32_t(packed.size()));
     return normals.download();
-}
-
-double angle(const glm::dvec3& a, const Float4& b) {
-    return glm::length(glm::cross(a, glm::dvec3(b.x, b.y, b.z)));
 }
 
 }  // namespace
 
-TEST_CASE("a packed normal comes back within 1e-4", "[normal][tiny]") {
+// Half a step of 1/127 is 0.00394.
+TEST_CASE("a packed normal is right to half a step of a byte", "[normal][tiny]") {
     const std::vector<glm::dvec3> normals = directions(4096);
     const std::vector<std::uint32_t> packed = pack(normals);
-    const std::vector<Float4> back = unpack("unpack_normals", packed);
+    const std::vector<Float4> back = components(packed, 0);
     for (std::size_t i = 0; i < normals.size(); ++i) {
         REQUIRE(packed[i] != STOKES_EMPTY_SLOT);
-        REQUIRE(angle(normals[i], back[i]) < 1e-4);
-        REQUIRE(glm::dot(normals[i], glm::dvec3(back[i].x, back[i].y, back[i].z)) > 0.0);
-        REQUIRE(std::hypot(back[i].x, back[i].y, back[i].z) == Approx(1.0).epsilon(1e-6));
+        REQUIRE(std::abs(static_cast<double>(back[i].x) - normals[i].x) < 0.00395);
+        REQUIRE(std::abs(static_cast<double>(back[i].y) - normals[i].y) < 0.00395);
+        REQUIRE(std::abs(static_cast<double>(back[i].z) - normals[i].z) < 0.00395);
+        REQUIRE(same_normal(packed[i], normals[i]));
     }
 }
 
 TEST_CASE("axes are packed exactly", "[normal][tiny]") {
-    const std::vector<glm::dvec3> axes = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
-                                          {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
-    const std::vector<Float4> back = unpack("unpack_normals", pack(axes));
+    std::vector<glm::dvec3> axes = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    axes.resize(16, {1, 0, 0});
+    const std::vector<Float4> back = components(pack(axes), 0);
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        CHECK(back[i].x == static_cast<float>(axes[i].x));
-        CHECK(back[i].y == static_cast<float>(axes[i].y));
-        CHECK(back[i].z == static_cast<float>(axes[i].z));
+        CHECK(back[i].x == Approx(axes[i].x).margin(1e-7));
+        CHECK(back[i].y == Approx(axes[i].y).margin(1e-7));
+        CHECK(back[i].z == Approx(axes[i].z).margin(1e-7));
     }
 }
 
-// Half a step of 1/127 is 0.00394.
-TEST_CASE("coarse normals are right to half a step of a byte", "[normal][tiny]") {
+TEST_CASE("a packed normal is of its own body, modulo 256", "[normal][tiny]") {
     const std::vector<std::uint32_t> packed = pack(directions(4096));
-    const std::vector<Float4> fine = unpack("unpack_normals", packed);
-    const std::vector<Float4> coarse = unpack("coarse_components", packed);
-    for (std::size_t i = 0; i < packed.size(); ++i) {
-        REQUIRE(std::abs(coarse[i].x - fine[i].x) < 0.00395f);
-        REQUIRE(std::abs(coarse[i].y - fine[i].y) < 0.00395f);
-        REQUIRE(std::abs(coarse[i].z - fine[i].z) < 0.00395f);
+    for (const std::uint32_t body : {0u, 1u, 127u, 128u, 255u, 256u, 700u}) {
+        const std::vector<Float4> found = components(packed, body);
+        for (std::size_t i = 0; i < packed.size(); ++i)
+            REQUIRE(found[i].w == (i % 256 == body % 256 ? -1.0f : 0.0f));
     }
 }

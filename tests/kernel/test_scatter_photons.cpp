@@ -127,9 +127,8 @@ void check_all(std::uint32_t paths) {
         const SurfacePoint& p = a.points[path];
         const PhotonHead& head = s.heads[first + i];
         CHECK((head.x == p.x && head.y == p.y && head.z == p.z));
-        const std::uint32_t packed = pack_normal_twin({p.nx, p.ny, p.nz});
-        CHECK(std::abs(int(head.normal & 0xffff) - int(packed & 0xffff)) <= 1);
-        CHECK(std::abs(int(head.normal >> 16) - int(packed >> 16)) <= 1);
+        CHECK(same_normal(head.normal, {p.nx, p.ny, p.nz}));
+        CHECK(head.normal >> 24 == (p.body & 255u));
         CHECK(same_bits(s.map_flux[first + i], a.flux[path]));
         CHECK(double(s.ledgers[path].stored.energy) == Approx(sum_of(a.flux[path])).epsilon(1e-6));
         if (p.material == 0) CHECK(s.ledgers[path].fate == STOKES_FATE_ABSORBED);

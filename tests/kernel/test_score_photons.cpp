@@ -142,9 +142,11 @@ TEST_CASE("photons that the camera does not see score nothing", "[score_photons]
                      head_at(0, 20, 12),     // above it, in the same pixels
                      head_at(400, 0, 0),     // beside the picture
                      head_at(0, 100, 70),    // behind the camera
+                     head_at(0, 0, 0),
                      head_at(0, 0, 0)};
     photons.heads[5].normal = STOKES_EMPTY_SLOT;
-    photons.flux.assign(6, constant_flux(1.0f));
+    photons.heads[6].normal |= 1u << 24;  // of another body
+    photons.flux.assign(7, constant_flux(1.0f));
     const std::vector<float> scores = scores_of(photons, STOKES_MAP_SINGLE, points, constant_flux(1.0f));
     CHECK(scores[0] > 0.0f);
     for (std::size_t i = 1; i < scores.size(); ++i) {

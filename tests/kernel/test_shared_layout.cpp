@@ -46,6 +46,8 @@ using namespace stokes;
     S(GatherPoint) F(GatherPoint, x) F(GatherPoint, y) F(GatherPoint, z) F(GatherPoint, pixel) \
         F(GatherPoint, nx) F(GatherPoint, ny) F(GatherPoint, nz) F(GatherPoint, material) \
         F(GatherPoint, maps) F(GatherPoint, weight) F(GatherPoint, reflected) F(GatherPoint, luminance) \
+        F(GatherPoint, radius_factor) F(GatherPoint, body) \
+    S(PixelRadius) F(PixelRadius, factor) F(PixelRadius, material) \
     S(HashGrid) F(HashGrid, origin_x) F(HashGrid, origin_y) F(HashGrid, origin_z) \
         F(HashGrid, cells_per_mm) F(HashGrid, cells_x) F(HashGrid, cells_y) F(HashGrid, cells_z) \
         F(HashGrid, row_mask) F(HashGrid, keys) F(HashGrid, bucket_shift) F(HashGrid, radius_mm) \

@@ -154,9 +154,7 @@ int map_of(const Walked& w, std::size_t i) {
 }
 
 glm::dvec3 normal_of(const PhotonHead& head) {
-    const double u = double(head.normal & 0xffff) / 32767.0 - 1.0, v = double(head.normal >> 16) / 32767.0 - 1.0;
-    const double w = 1.0 - std::abs(u) - std::abs(v), fold = std::max(-w, 0.0);
-    return glm::normalize(glm::dvec3(u - std::copysign(fold, u), v - std::copysign(fold, v), w));
+    return glm::normalize(unpack_normal_twin(head.normal));
 }
 
 glm::dvec3 place_of(const PhotonHead& head) { return {head.x, head.y, head.z}; }

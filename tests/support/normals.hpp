@@ -8,15 +8,21 @@
 
 namespace stokes {
 
-// n: unit length. The nearest octahedral grid point; a kernel may round to its neighbour.
-inline std::uint32_t pack_normal_twin(glm::dvec3 n) {
-    n /= std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-    if (n.z < 0.0)
-        n = {std::copysign(1.0 - std::abs(n.y), n.x), std::copysign(1.0 - std::abs(n.x), n.y), n.z};
-    const auto quantised = [](double u) {
-        return static_cast<std::uint32_t>(std::lround((u + 1.0) * 32767.0));
-    };
-    return quantised(n.x) | (quantised(n.y) << 16);
+// n: unit length. A kernel may round to a neighbour.
+inline std::uint32_t pack_normal_twin(glm::dvec3 n, std::uint32_t body = 0) {
+    const auto quantised = [](double u) { return static_cast<std::uint32_t>(std::lround(u * 127.0)) & 255u; };
+    return quantised(n.x) | (quantised(n.y) << 8) | (quantised(n.z) << 16) | (body << 24);
+}
+
+inline glm::dvec3 unpack_normal_twin(std::uint32_t packed) {
+    const auto component = [&](int shift) { return static_cast<std::int8_t>((packed >> shift) & 255u) / 127.0; };
+    return {component(0), component(8), component(16)};
+}
+
+// Half a step of 1/127 is 0.00394.
+inline bool same_normal(std::uint32_t packed, glm::dvec3 n) {
+    const glm::dvec3 off = glm::abs(unpack_normal_twin(packed) - n);
+    return off.x < 0.00395 && off.y < 0.00395 && off.z < 0.00395;
 }
 
 // Uniform on the unit sphere.
