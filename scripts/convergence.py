@@ -170,7 +170,7 @@ class Measurement:
                     continue
                 sampler = self.known[name]
                 jobs.append((self.curves, case.name, name, case.curve_job(sampler, seed, radius)))
-                if with_sources and case in cases and name in TWO and sampler.independent:
+                if with_sources and case in cases and name in TWO:
                     jobs.append((self.twice, case.name, name, case.twice_job(sampler, seed, radius)))
         results = self.renderer.run([job for *_, job in jobs])
         for where, case_name, name, job in jobs:
@@ -184,7 +184,7 @@ class Measurement:
         curves, truth = self.curves_of(case), self.truths[case.name]
         found = analysis.of_scene({name: curves[name] for name in self.names}, truth)
         for name, results in self.twice.get(case.name, {}).items():
-            found[name]["sources"] = analysis.sources(curves[name], results, truth)
+            found[name]["sources"] = analysis.sources(curves[name], results, truth, self.known[name].independent)
         return found
 
 

@@ -184,28 +184,35 @@ def bias(plain, other, truth):
 NESTED = 1e-4  # of the largest value: what rounding may take below zero
 
 
-def sources(curves, twice, truth):
-    """Shares of the mean square error by where it comes from, per layer; None where the photons of a render are not
-    among those of one with twice as many.
+def sources(curves, twice, truth, independent):
+    """Shares of the mean square error by where it comes from, per layer; None where the photons of a render should be but are
+    not among those of one with twice as many.
 
-    A render of the same seed with twice the photons, doubled, less the one with once: that is the picture of the other
-    half. Both halves share each pass's wavelengths and camera rays and nothing else, so their covariance over seeds is
-    the variance that those make, the rest that of the photons; what the mean over the seeds is off by is the kernel."""
+    independent: a render of the same seed with twice the photons, doubled, less the one with once: that is the picture of the
+    other half. Both halves share each pass's wavelengths and camera rays and nothing else, so their covariance over seeds
+    is the variance that those make, the rest that of the photons. Photons that depend on one another have no halves: the
+    variance of the photons is then twice what is gone with twice as many, as if it went as one over their number. What the mean
+    over the seeds is off by is the kernel."""
     found = {}
     for layer in truth.layers:
         first = np.array([image[layer].reshape(-1) for image in curves.images])
-        other = 2 * np.array([pictures.xyz(result.picture())[layer].reshape(-1) for result in twice]) - first
-        if other.min() < -NESTED * first.max():
+        both = np.array([pictures.xyz(result.picture())[layer].reshape(-1) for result in twice])
+        other = 2 * both - first
+        if independent and other.min() < -NESTED * first.max():
             return None
         target = truth.images[layer].reshape(-1)
 
-        def parts(chosen, variance, first=first, other=other, target=target):
+        def parts(chosen, variance, first=first, both=both, other=other, target=target):
             a, b = first[chosen], other[chosen]
             n = len(chosen)
             if n < 2:
                 return [np.nan] * 4
-            shared = float(np.mean((a - a.mean(axis=0)) * (b - b.mean(axis=0)))) * n / (n - 1)
-            total = float(np.mean(a.var(axis=0, ddof=1) + b.var(axis=0, ddof=1))) / 2
+            if independent:
+                shared = float(np.mean((a - a.mean(axis=0)) * (b - b.mean(axis=0)))) * n / (n - 1)
+                total = float(np.mean(a.var(axis=0, ddof=1) + b.var(axis=0, ddof=1))) / 2
+            else:
+                total = float(np.mean(a.var(axis=0, ddof=1)))
+                shared = 2 * float(np.mean(both[chosen].var(axis=0, ddof=1))) - total
             kernel = statistics.own_square(a - target) - variance
             mse = total + kernel
             return [shared / mse, (total - shared) / mse, kernel / mse, mse]

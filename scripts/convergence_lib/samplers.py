@@ -25,7 +25,8 @@ BEST = "best"  # all of them together that are in it
 SINGLE = (
     Sampler("wavelengths", ("--wavelengths", "importance")),
     Sampler("branches", ("--branches", "both")),
-    Sampler("emission", ("--emission", "stratified"), independent=False),
+    Sampler("emission", ("--emission", "aimed"), independent=False),
+    Sampler("stratified", ("--emission", "stratified"), independent=False, in_best=False),
     Sampler("direct", ("--direct", "rays")),
     Sampler("radii", ("--radii", "local"), in_best=False, same_kernel=False),
 )

@@ -192,15 +192,20 @@ class Analysis(unittest.TestCase):
             layers = {layer: np.mean(halves, axis=0) @ RGB_OF_XYZ for layer in pictures.LAYERS.values()}
             twice.append(types.SimpleNamespace(picture=lambda layers=layers: exr.Picture(layers, {})))
         curves.processor_s = np.ones(seeds)
-        found = analysis.sources(curves, twice, self.truth)["whole"]
+        found = analysis.sources(curves, twice, self.truth, True)["whole"]
+        dependent = analysis.sources(curves, twice, self.truth, False)["whole"]
         parts = {"wavelengths_and_camera": 0.09 * np.mean(LIGHT**2), "photons": 1.0, "kernel": 1.5**2}
         for name, part in parts.items():
             error = found[name + "_error"]
             self.assertLess(error, 0.1)
             self.assertAlmostEqual(found[name], part / sum(parts.values()), delta=4 * error, msg=name)
+            error = dependent[name + "_error"]
+            self.assertLess(error, 0.2)
+            self.assertAlmostEqual(dependent[name], part / sum(parts.values()), delta=4 * error, msg=name)
         for one in twice:  # other photons than those of the first render
             one.picture = lambda: exr.Picture({k: 0.1 * LIGHT @ RGB_OF_XYZ for k in pictures.LAYERS.values()}, {})
-        self.assertIsNone(analysis.sources(curves, twice, self.truth))
+        self.assertIsNone(analysis.sources(curves, twice, self.truth, True))
+        self.assertIsNotNone(analysis.sources(curves, twice, self.truth, False))
 
 
 class Plan(unittest.TestCase):
