@@ -16,14 +16,21 @@
 // Lights that a point looks at; where there are more, as many are drawn.
 #define MOST_LIGHTS 16u
 
+// Additive recurrences from a random start (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 // Two numbers in [0, 1), independent for each pixel and event; over the passes of one pixel they fill the unit square
-// evenly: the additive recurrence of the plastic number (Roberts 2018, "The unreasonable effectiveness of quasirandom
-// sequences") from a random start. Each alone is uniform.
+// evenly, by the plastic number. Each alone is uniform.
 FORCE_INLINE float2 spread_over_passes(__global const PassConstants* pass, uint pixel, uint event) {
     const Random4 start = random4(pass->seed, 0u, pixel, event, RNG_DIRECT);
     const uint a = ((uint)(start.a * 0x1p24f) << 8) + 0xC13FA9A9u * pass->pass;
     const uint b = ((uint)(start.b * 0x1p24f) << 8) + 0x91E10DA5u * pass->pass;
     return (float2)(uniform_from_bits(a), uniform_from_bits(b));
+}
+
+// One number, whose step has no common measure with those two, so that it fills the cube with them: the third power of the
+// inverse of the root of x^4 = x + 1.
+FORCE_INLINE float spread_alone(__global const PassConstants* pass, uint pixel, uint event) {
+    const Random4 start = random4(pass->seed, 0u, pixel, event, RNG_DIRECT);
+    return uniform_from_bits(((uint)(start.a * 0x1p24f) << 8) + 0x8CB92BA7u * pass->pass);
 }
 
 // What a point is lit by along one shadow ray: factor times the light's row of the pass's emission is the irradiance
@@ -66,16 +73,9 @@ FORCE_INLINE float light_factor(float picked, float area, float squared, float c
 FORCE_INLINE Shadow shadow_of_surface(__global const LightRecord* light, __global const float* light_areas,
                                       __global const Triangle* triangles, float2 u, float picked, float offset_mm,
                                       float3 at, float3 normal, float3 from) {
-    const uint k = pick_area(light_areas, light->first_area, light->triangle_count, u.x);
     const float area = light_areas[light->first_area + light->triangle_count - 1u];
-    const float before = k > 0u ? light_areas[light->first_area + k - 1u] : 0.0f;
-    // Where in the triangle's own part of [0, 1).
-    const float inside = clamp((u.x * area - before) / (light_areas[light->first_area + k] - before), 0.0f, 1.0f);
-    __global const Triangle* tri = &triangles[light->first_triangle + k];
-    const float3 e1 = (float3)(tri->e1x, tri->e1y, tri->e1z), e2 = (float3)(tri->e2x, tri->e2y, tri->e2z);
-    const float3 front = normalize(cross(e1, e2));
-    const float2 uv = uniform_triangle(inside, u.y);
-    const float3 start = (float3)(tri->v0x, tri->v0y, tri->v0z) + e1 * uv.x + e2 * uv.y + front * offset_mm;
+    const LightPoint point = point_on_light(light, light_areas, triangles, u);
+    const float3 front = point.normal, start = point.position + front * offset_mm;
     const float3 way = start - at;
     const float squared = dot(way, way), cosines = dot(way, normal), cos_light = -dot(way, front);
     Shadow shadow;
@@ -136,13 +136,13 @@ __kernel void add_direct_light(__global const GatherPoint* points, uint count, _
     const float3 from = at + normal * pass->offset_mm;
     const float16 reflected =
         M_1_PI_F * textured_reflectance(texture_records, spectra, point.material, point.luminance);
-    const float2 own = spread_over_passes(pass, point.pixel, 0u);
+    const float pick = spread_alone(pass, point.pixel, 0u);
     float4 sum = 0.0f;
     bool near = light_count > MOST_LIGHTS;
     for (uint k = 0u; k < min(light_count, MOST_LIGHTS); ++k) {
         const uint l = light_count <= MOST_LIGHTS
                            ? k
-                           : pick_light(lights, light_count, ((float)k + own.x) * (1.0f / (float)MOST_LIGHTS));
+                           : pick_light(lights, light_count, ((float)k + pick) * (1.0f / (float)MOST_LIGHTS));
         const float picked = times_picked(lights, light_count, l);
         __global const LightRecord* light = &lights[l];
         Shadow shadow;

@@ -27,7 +27,7 @@ FORCE_INLINE void start_path(uint path, float3 origin, float3 direction, float16
 }
 
 // Work-items: pass->photons, one a path.
-// Reads: lights [lights], light_areas [triangles of all surface lights, cumulative mm^2 within a light],
+// Reads: pass (seed, pass, photons, offset_mm), lights [lights], light_areas [triangles of all surface lights, cumulative mm^2 within a light],
 //   triangles [triangles], photon_flux [lights]: flux of one photon of that light [W/nm], which includes
 //   1/(photons * probability of the light).
 // Writes: rays, flux [W/nm], ledgers, list [paths].
@@ -47,14 +47,9 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
 
     float3 origin, direction;
     if (light->kind == STOKES_LIGHT_SURFACE) {
-        const uint k = pick_area(light_areas, light->first_area, light->triangle_count, at.b);
-        __global const Triangle* tri = &triangles[light->first_triangle + k];
-        const float3 e1 = (float3)(tri->e1x, tri->e1y, tri->e1z);
-        const float3 e2 = (float3)(tri->e2x, tri->e2y, tri->e2z);
-        const float3 normal = normalize(cross(e1, e2));
-        const float2 uv = uniform_triangle(at.c, at.d);
-        origin = (float3)(tri->v0x, tri->v0y, tri->v0z) + e1 * uv.x + e2 * uv.y + normal * pass->offset_mm;
-        direction = cosine_direction(normal, to.a, to.b);
+        const LightPoint point = point_on_light(light, light_areas, triangles, (float2)(at.b, at.c));
+        origin = point.position + point.normal * pass->offset_mm;
+        direction = cosine_direction(point.normal, to.a, to.b);
     } else {
         float2 uv;
         if (light->kind == STOKES_LIGHT_BEAM_DISK) {
@@ -72,8 +67,8 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
 
 // Work-items: pass->photons, one a path.
 // Reads: cells [cell_count], first_photons [cell_count + 1]: the photons of cell c are first_photons[c] to
-//   first_photons[c + 1] - 1; the rest as emit_photons.
-// Writes: as emit_photons; flux times the cell's weight.
+//   first_photons[c + 1] - 1, one at least; the rest as emit_photons.
+// Writes: as emit_photons; flux times the cell's probability over the share of the photons that start in it.
 // The photons of a cell lie on it as the points of a low-discrepancy sequence that goes on from pass to pass.
 __kernel void emit_stratified(__global const PassConstants* pass, uint cell_count, __global const EmissionCell* cells,
                               __global const uint* first_photons, __global const LightRecord* lights,
@@ -87,8 +82,10 @@ __kernel void emit_stratified(__global const PassConstants* pass, uint cell_coun
     const float4 place =
         place_of_photon(pass, &cells[c], c, path - first_photons[c], light->kind == STOKES_LIGHT_SURFACE);
     const EmittedRay start = emitted_ray(light, light_areas, triangles, pass->offset_mm, place);
-    start_path(path, start.origin, start.direction, photon_flux[cells[c].light] * cells[c].weight, pass, rays, flux,
-               ledgers, list);
+    const uint count = first_photons[c + 1u] - first_photons[c];
+    const float weight = cells[c].probability * (float)pass->photons / (float)count;
+    start_path(path, start.origin, start.direction, photon_flux[cells[c].light] * weight, pass, rays, flux, ledgers,
+               list);
 }
 
 // Work-items: pass->photons, one a path. Reads as emit_stratified. Writes: where that starts them: cell_of_path [paths]

@@ -20,7 +20,7 @@ FORCE_INLINE bool on_surface(BvhScene scene, __global const Triangle* triangles,
     Hit hit = bvh_closest(scene, ray, all);
     if (hit.triangle == STOKES_NONE) return false;
     const uint other = triangles[hit.triangle].body;
-    if (other != body) {
+    if (((other ^ body) & 255u) != 0u) {  // as the photons' bodies are told apart
         const BvhFilter front = {BVH_FRONT, body, triangles}, back = {BVH_BACK, body, triangles};
         const BvhFilter foot = {BVH_BACK, other, triangles};
         hit = bvh_closest(scene, ray, front);

@@ -259,6 +259,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
     RenderStats stats = collect_stats(scene, device, *renderer);
     stats.wall_s = wall_s;
     stats.processor_s = processor_s;
+    stats.trials_processor_s = renderer->trials_processor_s();
     stats.set_up_s = set_up_s;
     if (!options.quiet) say_what_was_dropped(stats);
     warn_about(stats.ledger);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 #include <random>
 #include <tuple>
@@ -132,25 +131,31 @@ class Partition {
     double all_ = 0.0;
 };
 
-EmissionCell record_of(const Box& box, double share) {
+// Each cell has at least one photon in every pass.
+constexpr double least_photons = 1.5;
+
+EmissionCell record_of(const Box& box, double photons) {
     EmissionCell cell{};
     std::copy(box.low.begin(), box.low.end(), cell.low);
     std::copy(box.size.begin(), box.size.end(), cell.size);
     cell.light = box.light;
-    cell.weight = static_cast<float>(box.volume / share);
+    cell.probability = static_cast<float>(box.volume);
+    cell.stride = static_cast<std::uint32_t>(std::floor(photons)) + 1;
     return cell;
 }
 
 }  // namespace
 
-EmissionCells EmissionCells::even(const std::vector<EmittingLight>& lights) {
-    return aimed(lights, {}, 1.0, lights.size());
+EmissionCells EmissionCells::even(const std::vector<EmittingLight>& lights, std::uint32_t photons) {
+    return aimed(lights, {}, 1.0, lights.size(), photons);
 }
 
 EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights,
                                    const std::vector<EmissionSample>& samples, double even_share,
-                                   std::size_t most_cells) {
-    std::vector<Box> boxes = Partition(lights, samples).cut(most_cells);
+                                   std::size_t most_cells, std::uint32_t photons) {
+    std::vector<Box> boxes = Partition(lights, samples).cut(std::min<std::size_t>(most_cells, photons / 3));
+    const double least_share = least_photons / photons, rest = 1.0 - least_share * static_cast<double>(boxes.size());
+    if (rest < 0.5) return {};
     // Cells in order of place lie side by side in memory, so that neighbouring work-items do the same.
     std::stable_sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
         return std::tie(a.light, a.low) < std::tie(b.light, b.low);
@@ -161,26 +166,19 @@ EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights,
         roots += root(box.volume, box.square);
     }
     EmissionCells cells;
+    cells.photons_ = photons;
     for (Box& box : boxes) {
+        const double aimed = roots > 0.0 ? root(box.volume, box.square) / roots : box.volume / volume;
         box.volume /= volume;
-        const double aimed = roots > 0.0 ? root(box.volume * volume, box.square) / roots : box.volume;
-        cells.shares_.push_back(even_share * box.volume + (1.0 - even_share) * aimed);
-        cells.records_.push_back(record_of(box, cells.shares_.back()));
+        cells.shares_.push_back(least_share + rest * (even_share * box.volume + (1.0 - even_share) * aimed));
+        cells.records_.push_back(record_of(box, cells.shares_.back() * photons));
     }
-    return cells;
-}
-
-EmissionCells EmissionCells::with_photons(std::uint32_t photons) const {
-    EmissionCells cells = *this;
-    for (std::size_t c = 0; c < shares_.size(); ++c)
-        cells.records_[c].stride = static_cast<std::uint32_t>(std::floor(shares_[c] * photons)) + 1;
     return cells;
 }
 
 // Systematic sampling: the shares side by side on a line of this length, and a photon at each whole number plus an offset.
 // The offset goes on by the golden section from pass to pass.
-std::vector<std::uint32_t> EmissionCells::first_photons(std::uint32_t seed, std::uint32_t pass,
-                                                        std::uint32_t photons) const {
+std::vector<std::uint32_t> EmissionCells::first_photons(std::uint32_t seed, std::uint32_t pass) const {
     std::seed_seq sequence{seed, 0xe3155u};
     std::mt19937_64 generator(sequence);
     const double start = static_cast<double>(generator() >> 11) * 0x1p-53;
@@ -189,9 +187,9 @@ std::vector<std::uint32_t> EmissionCells::first_photons(std::uint32_t seed, std:
     double sum = 0.0;
     for (std::size_t c = 0; c + 1 < shares_.size(); ++c) {
         sum += shares_[c];
-        first[c + 1] = static_cast<std::uint32_t>(std::clamp(std::floor(sum * photons + offset), 0.0, double(photons)));
+        first[c + 1] = static_cast<std::uint32_t>(std::clamp(std::floor(sum * photons_ + offset), 0.0, double(photons_)));
     }
-    first.back() = photons;
+    first.back() = photons_;
     return first;
 }
 

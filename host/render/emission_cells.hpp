@@ -28,28 +28,27 @@ class EmissionCells {
   public:
     EmissionCells() = default;
 
-    // A cell a light: evenly spread. Lights of probability 0 have none.
-    static EmissionCells even(const std::vector<EmittingLight>& lights);
+    // For passes of this many photons, a cell a light: evenly spread. Lights of probability 0 have none. No cells at all,
+    // which stands for random emission, where there are less than three photons a cell.
+    static EmissionCells even(const std::vector<EmittingLight>& lights, std::uint32_t photons);
 
     // Cells that are small where the samples' squares differ, with photons in proportion to the root of each cell's mean
-    // square, which makes the variance of the picture least; but an even_share of the photons as even() spreads them, so that no
-    // photon weighs more than 1/even_share. At most most_cells, or even() where no sample has a value.
+    // square, which makes the variance of the picture least; but an even_share of the photons as even() spreads them, so that
+    // hardly a photon weighs more than 1/even_share, and one and a half photons to each cell. At most most_cells, or even()
+    // where no sample has a value.
     static EmissionCells aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
-                               double even_share, std::size_t most_cells);
+                               double even_share, std::size_t most_cells, std::uint32_t photons);
 
-    // stride is left 0; it depends on the photons of a pass: with_photons.
     const std::vector<EmissionCell>& records() const { return records_; }
     // Share of the photons, in the order of records; their sum is 1.
     const std::vector<double>& shares() const { return shares_; }
 
-    // The same, for passes of this many photons.
-    EmissionCells with_photons(std::uint32_t photons) const;
-
-    // Photons first[c] to first[c + 1] - 1 of the pass start in cell c; first[0] = 0, the last is photons. In the mean over
-    // seeds each cell has its share exactly, and in each pass the integer below or above.
-    std::vector<std::uint32_t> first_photons(std::uint32_t seed, std::uint32_t pass, std::uint32_t photons) const;
+    // Photons first[c] to first[c + 1] - 1 of the pass start in cell c, at least one; first[0] = 0, the last is the photons of
+    // a pass. Each cell has the integer below or above its share of them, in the mean over seeds the share exactly.
+    std::vector<std::uint32_t> first_photons(std::uint32_t seed, std::uint32_t pass) const;
 
   private:
+    std::uint32_t photons_ = 0;
     std::vector<EmissionCell> records_;
     std::vector<double> shares_;
 };

@@ -27,13 +27,15 @@ void EmissionTrial::add(const EmissionCells& cells, const DeviceScene& scene, co
     const std::vector<double> scores = path_scores(pass, maps, camera, points, textures);
     const std::vector<std::uint32_t> cell = cells_.download();
     const std::vector<Place> places = places_.download();
+    std::vector<double> count(cells.records().size(), 0.0);
+    for (const std::uint32_t c : cell) count[c] += 1.0;
     for (std::uint32_t path = 0; path < photons_; ++path) {
         const EmissionCell& record = cells.records()[cell[path]];
         EmissionSample sample;
         sample.light = record.light;
         std::copy(std::begin(places[path].at), std::end(places[path].at), sample.place.begin());
         // A photon of weight w has w times the flux, and stands for w photons.
-        sample.square = scores[path] / static_cast<double>(record.weight);
+        sample.square = scores[path] / (static_cast<double>(record.probability) * photons_ / count[cell[path]]);
         samples_.push_back(sample);
     }
     ++passes_;

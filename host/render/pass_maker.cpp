@@ -53,7 +53,7 @@ void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std
     buffers_.rows.upload(spectra_.rows);
     buffers_.photon_flux.upload(spectra_.photon_flux);
     buffers_.radiance.upload(spectra_.radiance);
-    if (buffers_.cell_count > 0) buffers_.first_photons.upload(cells_.first_photons(scene_.render.seed, pass, photons));
+    if (buffers_.cell_count > 0) buffers_.first_photons.upload(cells_.first_photons(scene_.render.seed, pass));
     resample_tables();
     if (on_device_.integrated) sample_media();
 }

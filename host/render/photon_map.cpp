@@ -28,7 +28,8 @@ void PhotonMap::reserve(std::uint32_t count) {
     const std::uint64_t needed = std::uint64_t{used_} + count;
     if (needed <= capacity_) return;
     // The map and, at most, its hash anew, beside what is there now.
-    const std::uint64_t slot_bytes = sizeof(PhotonHead) + sizeof(Flux16) + hash_bytes_per_slot;
+    const std::uint64_t slot_bytes = sizeof(PhotonHead) + sizeof(Flux16) + hash_bytes_per_slot +
+                                     (note_paths_ ? sizeof(std::uint32_t) + sizeof(float) : 0);  // path and score
     const std::uint64_t in_one_piece = device_.description().largest_allocation_bytes / sizeof(Flux16);
     const std::uint64_t room = std::min({device_.memory_left() / slot_bytes, in_one_piece, largest_map});
     if (room < needed) return;

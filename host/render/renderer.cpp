@@ -1,8 +1,10 @@
 #include "host/render/renderer.hpp"
 
 #include <algorithm>
+#include <ctime>
 
 #include "host/core/error.hpp"
+#include "host/core/log.hpp"
 #include "host/render/emission_trial.hpp"
 #include "host/render/local_radii.hpp"
 #include "host/render/radius.hpp"
@@ -15,10 +17,10 @@ namespace {
 // Index of the trial pass that finds the radius; no render reaches it.
 constexpr std::uint32_t trial_pass = 0xffffffffu;
 
-// Trial passes for the aiming of photons have the indices below, and at least this many photons together. The second half
-// of them starts where the first half found that they should.
+// Trial passes for the aiming of photons have the indices below, and together this many photons where that takes no more of them.
+// The second half of them starts where the first half found that they should.
 constexpr std::uint32_t least_trials = 4, most_trials = 32;
-constexpr std::uint32_t trial_photons = 1u << 20;
+constexpr std::uint32_t all_trial_photons = 1u << 20, most_trial_photons = all_trial_photons / least_trials;
 
 // Share of the photons that start evenly spread in the trials' second half, and in the render.
 constexpr double even_share_of_trials = 0.3, even_share = 0.15;
@@ -58,7 +60,11 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     const RayKernels& kernels = on_device_.rays.kernels;
     trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
     if (on_device_.has_fresnel) trace_seen_ = kernels.program(device, "see_surfaces.cl").kernel("trace_seen");
+    const std::clock_t start = std::clock();
     set_up_passes();
+    device_.finish();
+    trials_processor_s_ = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    // Trials have added the emitters that they saw.
     film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
     device_.reset_stage_times();
 }
@@ -81,8 +87,16 @@ void Renderer::set_up_passes() {
     }
     first_radius_mm_ = render.radius_mm.value_or(found_mm);
     if (chosen_emission(render) == Emission::stratified)
-        pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_)).with_photons(photons_));
-    if (chosen_emission(render) == Emission::aimed) pass_.set_emission(aimed_cells());
+        pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_), photons_));
+    if (chosen_emission(render) == Emission::aimed) {
+        try {
+            pass_.set_emission(aimed_cells());
+        } catch (const InputError& error) {  // no memory for the trials
+            for (PhotonMap& map : maps_) map.track_paths(false);
+            warn(std::string("photons are spread evenly in place of aimed: ") + error.what());
+            pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_), photons_));
+        }
+    }
     if (!local) return;
     make_trial_photons(pass_.buffers().store_direct);
     gather_.set_radii(find_local_radii(found_mm));
@@ -119,27 +133,30 @@ double Renderer::find_first_radius() {
 EmissionCells Renderer::aimed_cells() {
     const std::vector<EmittingLight> lights = emitting_lights(scene_, on_device_);
     const RenderSettings& render = scene_.render;
-    const std::uint32_t trials = std::clamp(trial_photons / photons_, least_trials, most_trials);
-    const std::size_t cell_limit = std::clamp(photons_ / photons_per_cell, 1u, most_cells) + lights.size();
+    const std::uint32_t photons = std::min(photons_, most_trial_photons);
+    const std::uint32_t trials = std::clamp(all_trial_photons / photons, least_trials, most_trials);
+    const auto cells_of = [&](std::uint32_t n) { return std::clamp(n / photons_per_cell, 1u, most_cells) + lights.size(); };
+    const std::size_t trial_cells = cells_of(photons);
     std::optional<StratifiedWavelengths> strata;
     if (render.lambda_max_nm - render.lambda_min_nm + 1 > STOKES_WAVELENGTHS)
         strata.emplace(render.lambda_min_nm, wavelength_importance(scene_));
-    EmissionTrial trial(device_, photons_);
-    EmissionCells cells = EmissionCells::even(lights).with_photons(photons_);
+    EmissionTrial trial(device_, photons);
+    EmissionCells cells = EmissionCells::even(lights, photons);
+    if (cells.records().empty()) return cells;
     for (PhotonMap& map : maps_) map.track_paths(true);
     for (std::uint32_t i = 0; i < trials; ++i) {
         if (i == trials / 2)
-            cells = EmissionCells::aimed(lights, trial.samples(), even_share_of_trials, cell_limit).with_photons(photons_);
+            cells = EmissionCells::aimed(lights, trial.samples(), even_share_of_trials, trial_cells, photons);
         if (i == 0 || i == trials / 2) pass_.set_emission(cells);
         const std::uint32_t pass = trial_pass - 1 - i;
-        pass_.make(strata ? strata->draw(render.seed, pass) : pass_wavelengths(render, pass), pass, photons_);
+        pass_.make(strata ? strata->draw(render.seed, pass) : pass_wavelengths(render, pass), pass, photons);
         for (PhotonMap& map : maps_) map.clear();
-        tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
+        tracer_.trace(on_device_, pass_.buffers(), photons, maps_);
         see_points(view_.camera());
         trial.add(cells, on_device_, pass_.buffers(), maps_, view_.camera(), gather_.points(), on_device_.textures);
     }
     for (PhotonMap& map : maps_) map.track_paths(false);
-    return EmissionCells::aimed(lights, trial.samples(), even_share, cell_limit).with_photons(photons_);
+    return EmissionCells::aimed(lights, trial.samples(), even_share, cells_of(photons_), photons_);
 }
 
 // From the points of this picture, be it a crop: photons are counted about them, so that a crop has the radii of its part

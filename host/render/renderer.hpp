@@ -39,6 +39,8 @@ class Renderer {
     std::uint64_t camera_rays() const { return std::uint64_t{passes_} * view_.ray_count(); }
     double first_radius() const { return first_radius_mm_; }  // [mm]
     double radius_of(std::uint32_t pass) const;                // [mm]
+    // Processor time of the trial passes that found radii and where photons should start, of all threads of the process.
+    double trials_processor_s() const { return trials_processor_s_; }
 
   private:
     PhotonMaps make_maps();
@@ -55,7 +57,7 @@ class Renderer {
     Scene scene_;
     DeviceScene on_device_;
     std::uint32_t photons_;
-    double first_radius_mm_ = 0.0;
+    double first_radius_mm_ = 0.0, trials_processor_s_ = 0.0;
     PassMaker pass_;
     PhotonTracer tracer_;
     HashBuilder hash_builder_;

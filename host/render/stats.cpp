@@ -59,6 +59,7 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("height", std::to_string(s.height));
     add("wall_s", number(s.wall_s));
     add("processor_s", number(s.processor_s));
+    add("trials_processor_s", number(s.trials_processor_s));
     add("set_up_s", number(s.set_up_s));
     add("photons_emitted", number(s.photons_emitted));
     add("photons_per_second", number(rate(s.photons_emitted)));

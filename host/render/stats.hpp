@@ -17,6 +17,7 @@ struct RenderStats {
     int width = 0, height = 0;
     double wall_s = 0.0;      // of the passes, without set-up
     double processor_s = 0.0; // the same, of all the host's threads together
+    double trials_processor_s = 0.0;  // of the trial passes at set-up
     double set_up_s = 0.0;    // reading, building, compiling
     std::uint64_t photons_emitted = 0, rays_traced = 0, deposits = 0;
     std::map<std::string, double> stages;  // kernel name -> seconds, by the device's own clock

@@ -27,12 +27,10 @@ typedef struct LightRecord {
 STOKES_ASSERT_SIZE(LightRecord, 80);
 
 // A part of where and whereto a light emits, with a share of the pass's photons: a box in the cube [0, 1]^4 that
-// lib/emission.clh maps onto the light, all of it evenly. Written by the host once per scene, as many as partition the
-// cubes of all lights.
+// lib/emission.clh maps onto the light, all of it evenly. Written by the host; they partition the cubes of all lights.
 typedef struct EmissionCell {
     float low[4], size[4];
-    float weight;         // factor on a photon's flux: probability of the box among all that the lights emit, over the
-                          // share of the photons that start there
+    float probability;    // of the box among all that the lights emit at random
     unsigned int light;   // index into the LightRecord buffer
     unsigned int stride;  // points of the cell's sequence for a pass: at least as many as photons start there
     unsigned int pad;

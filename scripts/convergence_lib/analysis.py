@@ -66,8 +66,11 @@ class Curves:
             name: np.array([[float(row[f"rmse_{name}"]) ** 2 for row in seed] for seed in rows])
             for name in pictures.LAYERS
         }  # [seeds, rows], the truth's error included
-        self.processor_s = np.array([result.stats["processor_s"] for result in results])
-        self.wall_s = np.array([result.stats["wall_s"] for result in results])
+        # The trial passes of set-up included, at the share of the passes' time that they take of the processor's.
+        trials = np.array([result.stats.get("trials_processor_s", 0) for result in results])
+        passes = np.array([result.stats["processor_s"] for result in results])
+        self.processor_s = passes + trials
+        self.wall_s = np.array([result.stats["wall_s"] for result in results]) * self.processor_s / passes
         wall = np.array([[float(row["seconds"]) for row in seed] for seed in rows])
         # Of each row: that of the render, shared out by the wall time of the passes.
         self.seconds = np.mean(wall / wall[:, -1:] * self.processor_s[:, None], axis=0)

@@ -43,8 +43,9 @@ def axes(columns=1, width=6.4, height=4.0):
 
 
 def base(name, settings):
-    """scenes/NAME.json, its radius suited to the photons."""
+    """scenes/NAME.json, by the paper's plain samplers, its radius suited to the photons."""
     scene = scenes.load(name)
+    scene["render"]["sampling"] = "plain"
     if "radius_mm" in scene["render"]:
         scene["render"]["radius_mm"] *= settings.radius_scale
     return scene

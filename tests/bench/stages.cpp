@@ -8,12 +8,12 @@ namespace {
 
 const std::vector<std::pair<std::string, std::vector<std::string>>> groups = {
     {"tracing",
-     {"emit_photons", "trace_closest", "trace_probe", "classify_photons", "camera_rays", "trace_closest_all", "trace_packets",
+     {"emit_photons", "emit_stratified", "trace_closest", "trace_probe", "classify_photons", "camera_rays", "trace_closest_all", "trace_packets",
       "trace_seen"}},
     {"depositing",
      {"scatter_diffuse", "sample_exits", "place_exits", "deposit_exits", "retrace_fluorescence", "retrace_elastic",
       "retrace_exits", "fold_exits", "draw_exits", "integrate_power", "walk_photons"}},
-    {"gathering", {"collect_points", "add_direct_light", "measure_disks", "gather_radiance"}},
+    {"gathering", {"collect_points", "add_direct_light", "choose_radii", "measure_disks", "gather_radiance"}},
     {"sorting",
      {"find_keys", "count_buckets", "scan_chunks", "scan_buckets", "scatter_slots", "sort_buckets", "permute_photons"}},
     {"lists", {"count_lists", "scan_lists", "write_lists"}},

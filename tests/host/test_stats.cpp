@@ -30,6 +30,7 @@ RenderStats example() {
     stats.height = 360;
     stats.wall_s = 2.5;
     stats.processor_s = 4.75;
+    stats.trials_processor_s = 0.375;
     stats.photons_emitted = 12000000000ull;  // beyond 32 bits
     stats.rays_traced = 50;
     stats.deposits = 7;
@@ -75,6 +76,7 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     CHECK(json.at("seed") == 4000000000u);
     CHECK(json.at("wall_s") == 2.5);
     CHECK(json.at("processor_s") == 4.75);
+    CHECK(json.at("trials_processor_s") == 0.375);
     CHECK(json.at("photons_emitted") == 12000000000ull);
     CHECK(json.at("photons_per_second") == 4.8e9);
     CHECK(json.at("rays_traced") == 50);

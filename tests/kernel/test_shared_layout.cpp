@@ -61,6 +61,8 @@ using namespace stokes;
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
         F(LightRecord, ball_mm) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, pad1) \
         F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, pad2) \
+    S(EmissionCell) F(EmissionCell, low) F(EmissionCell, size) F(EmissionCell, probability) F(EmissionCell, light) \
+        F(EmissionCell, stride) F(EmissionCell, pad) \
     S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) \
     S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, medium) \
         F(MaterialRecord, fluorescent_fraction) F(MaterialRecord, eta) F(MaterialRecord, excitation_row) \

@@ -19,6 +19,7 @@ Scene mixed_scene(Direct direct) {
     Scene scene = small_scene(Transport::conserving);
     scene.render.direct = direct;
     scene.render.radius_mm = 1.5;
+    scene.render.emission = Emission::random;  // aimed photons would leave out what rays bring
     scene.render.photons_per_pass = 100000;
     scene.media[0].eta = 1.5;
     Material smooth = scene.materials[1];
