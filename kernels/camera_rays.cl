@@ -1,3 +1,4 @@
+// The camera's rays of a pass, one a pixel.
 #include "lib/low_discrepancy.clh"
 #include "lib/rng.clh"
 #include "lib/tiles.clh"

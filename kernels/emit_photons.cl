@@ -1,10 +1,8 @@
 // Stage 1 of a pass: photons leave the lights.
 #include "lib/emission.clh"
 #include "lib/inline.clh"
-#include "lib/light_area.clh"
 #include "lib/light_sum.clh"
 #include "lib/rng.clh"
-#include "lib/sampling.clh"
 #include "shared/light.h"
 #include "shared/pass.h"
 #include "shared/path.h"
@@ -27,9 +25,9 @@ FORCE_INLINE void start_path(uint path, float3 origin, float3 direction, float16
 }
 
 // Work-items: pass->photons, one a path.
-// Reads: pass (seed, pass, photons, offset_mm), lights [lights], light_areas [triangles of all surface lights, cumulative mm^2 within a light],
-//   triangles [triangles], photon_flux [lights]: flux of one photon of that light [W/nm], which includes
-//   1/(photons * probability of the light).
+// Reads: pass (seed, pass, photons, offset_mm), lights [lights], light_areas [triangles of all surface lights,
+//   cumulative mm^2 within a light], triangles [triangles], photon_flux [lights]: flux of one photon of that light
+//   [W/nm], which includes 1/(photons * probability of the light).
 // Writes: rays, flux [W/nm], ledgers, list [paths].
 // A light is chosen by its probability; a surface emits cosine-distributed from a point uniform in area, a beam
 // emits parallel light from a point uniform over its cross-section.
@@ -45,24 +43,9 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
     while (light_index + 1u < light_count && at.a >= lights[light_index].cumulative_probability) ++light_index;
     __global const LightRecord* light = &lights[light_index];
 
-    float3 origin, direction;
-    if (light->kind == STOKES_LIGHT_SURFACE) {
-        const LightPoint point = point_on_light(light, light_areas, triangles, (float2)(at.b, at.c));
-        origin = point.position + point.normal * pass->offset_mm;
-        direction = cosine_direction(point.normal, to.a, to.b);
-    } else {
-        float2 uv;
-        if (light->kind == STOKES_LIGHT_BEAM_DISK) {
-            uv = sqrt(at.c) * unit_circle(at.d);
-        } else {
-            uv = 2.0f * (float2)(at.c, at.d) - 1.0f;
-        }
-        origin = (float3)(light->px, light->py, light->pz) + (float3)(light->ux, light->uy, light->uz) * uv.x +
-                 (float3)(light->vx, light->vy, light->vz) * uv.y;
-        direction = (float3)(light->dx, light->dy, light->dz);
-    }
-
-    start_path(path, origin, direction, photon_flux[light_index], pass, rays, flux, ledgers, list);
+    const EmittedRay start =
+        emitted_ray(light, light_areas, triangles, pass->offset_mm, (float4)(at.b, at.c, to.a, to.b));
+    start_path(path, start.origin, start.direction, photon_flux[light_index], pass, rays, flux, ledgers, list);
 }
 
 // Work-items: pass->photons, one a path.

@@ -26,11 +26,11 @@ __kernel void note_paths(uint count, uint exits, uint first_slot, uint slot_limi
 }
 
 // Work-items: slots of the map.
-// Reads: heads, flux [slots, W/nm], points [width * height] in the order of lib/tiles.clh, as collect_points leaves them,
-//   spectra, texture_records, pass (to_x, to_y, to_z).
-// Writes: scores [slots]: the squares that the photon adds to X, Y and Z [(cd/m^2)^2 mm^2], summed over pixels, but for the
-//   square of the radius: a photon of flux f in a disk of area A on which a pixel covers the area a adds f/(pi A) to A/a
-//   pixels. 0 where the camera does not see it.
+// Reads: heads, flux [slots, W/nm], points [width * height] in the order of lib/tiles.clh, as collect_points leaves
+//   them, spectra, texture_records, pass (to_x, to_y, to_z).
+// Writes: scores [slots]: the squares that the photon adds to X, Y and Z [(cd/m^2)^2 mm^2], summed over pixels, but for
+//   the square of the radius: a photon of flux f in a disk of area A on which a pixel covers the area a adds f/(pi A)
+//   to A/a pixels. 0 where the camera does not see it.
 __kernel void score_photons(uint slots, uint map, CameraRecord camera, __global const PassConstants* pass,
                             __global const PhotonHead* heads, __global const float16* flux,
                             __global const GatherPoint* points, __global const float16* spectra,

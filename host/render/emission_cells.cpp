@@ -25,14 +25,16 @@ constexpr float smallest_edge = 0x1p-10f;
 struct Box {
     std::uint32_t light = 0;
     std::array<float, 4> low{0.0f, 0.0f, 0.0f, 0.0f}, size{1.0f, 1.0f, 1.0f, 1.0f};
-    double volume = 0.0;  // probability under random emission
-    double square = 0.0;  // share of the mean square
+    double volume = 0.0;             // probability under random emission
+    double square = 0.0;             // share of the mean square
     std::size_t begin = 0, end = 0;  // samples
     std::size_t cut = 0;             // the coordinate along which to cut it
     double gain = 0.0;
 };
 
-double root(double volume, double square) { return std::sqrt(volume * square); }
+double root(double volume, double square) {
+    return std::sqrt(volume * square);
+}
 
 class Partition {
   public:
@@ -108,8 +110,8 @@ class Partition {
         const float middle = whole.low[d] + 0.5f * whole.size[d];
         const auto first = samples_.begin() + static_cast<std::ptrdiff_t>(whole.begin);
         const auto last = samples_.begin() + static_cast<std::ptrdiff_t>(whole.end);
-        const auto upper = std::stable_partition(
-            first, last, [&](const EmissionSample& sample) { return sample.place[d] < middle; });
+        const auto upper =
+            std::stable_partition(first, last, [&](const EmissionSample& sample) { return sample.place[d] < middle; });
         Box halves[2] = {whole, whole};
         halves[0].end = halves[1].begin = static_cast<std::size_t>(upper - samples_.begin());
         halves[1].low[d] = middle;
@@ -150,16 +152,14 @@ EmissionCells EmissionCells::even(const std::vector<EmittingLight>& lights, std:
     return aimed(lights, {}, 1.0, lights.size(), photons);
 }
 
-EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights,
-                                   const std::vector<EmissionSample>& samples, double even_share,
-                                   std::size_t most_cells, std::uint32_t photons) {
+EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
+                                   double even_share, std::size_t most_cells, std::uint32_t photons) {
     std::vector<Box> boxes = Partition(lights, samples).cut(std::min<std::size_t>(most_cells, photons / 3));
     const double least_share = least_photons / photons, rest = 1.0 - least_share * static_cast<double>(boxes.size());
     if (rest < 0.5) return {};
     // Cells in order of place lie side by side in memory, so that neighbouring work-items do the same.
-    std::stable_sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
-        return std::tie(a.light, a.low) < std::tie(b.light, b.low);
-    });
+    std::stable_sort(boxes.begin(), boxes.end(),
+                     [](const Box& a, const Box& b) { return std::tie(a.light, a.low) < std::tie(b.light, b.low); });
     double volume = 0.0, roots = 0.0;
     for (const Box& box : boxes) {
         volume += box.volume;
@@ -176,8 +176,8 @@ EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights,
     return cells;
 }
 
-// Systematic sampling: the shares side by side on a line of this length, and a photon at each whole number plus an offset.
-// The offset goes on by the golden section from pass to pass.
+// Systematic sampling: the shares side by side on a line of this length, and a photon at each whole number plus an
+// offset. The offset goes on by the golden section from pass to pass.
 std::vector<std::uint32_t> EmissionCells::first_photons(std::uint32_t seed, std::uint32_t pass) const {
     std::seed_seq sequence{seed, 0xe3155u};
     std::mt19937_64 generator(sequence);
@@ -187,7 +187,8 @@ std::vector<std::uint32_t> EmissionCells::first_photons(std::uint32_t seed, std:
     double sum = 0.0;
     for (std::size_t c = 0; c + 1 < shares_.size(); ++c) {
         sum += shares_[c];
-        first[c + 1] = static_cast<std::uint32_t>(std::clamp(std::floor(sum * photons_ + offset), 0.0, double(photons_)));
+        first[c + 1] =
+            static_cast<std::uint32_t>(std::clamp(std::floor(sum * photons_ + offset), 0.0, double(photons_)));
     }
     first.back() = photons_;
     return first;

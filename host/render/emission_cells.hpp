@@ -13,8 +13,9 @@ namespace stokes {
 struct EmissionSample {
     std::uint32_t light = 0;
     std::array<float, 4> place{};  // in the light's cube, as lib/emission.clh has it
-    // Square of its value in the picture, had it the flux of random emission, times how many photons of random emission it
-    // stands for, over their number in all trials: the sum over a part's samples estimates the part's share of the mean square.
+    // Square of its value in the picture, had it the flux of random emission, times how many photons of random emission
+    // it stands for, over their number in all trials: the sum over a part's samples estimates the part's share of the
+    // mean square.
     double square = 0.0;
 };
 
@@ -28,14 +29,14 @@ class EmissionCells {
   public:
     EmissionCells() = default;
 
-    // For passes of this many photons, a cell a light: evenly spread. Lights of probability 0 have none. No cells at all,
-    // which stands for random emission, where there are less than three photons a cell.
+    // For passes of this many photons, a cell a light: evenly spread. Lights of probability 0 have none. No cells at
+    // all, which stands for random emission, where there are less than three photons a cell.
     static EmissionCells even(const std::vector<EmittingLight>& lights, std::uint32_t photons);
 
-    // Cells that are small where the samples' squares differ, with photons in proportion to the root of each cell's mean
-    // square, which makes the variance of the picture least; but an even_share of the photons as even() spreads them, so that
-    // hardly a photon weighs more than 1/even_share, and one and a half photons to each cell. At most most_cells, or even()
-    // where no sample has a value.
+    // Cells that are small where the samples' squares differ, with photons in proportion to the root of each cell's
+    // mean square, which makes the variance of the picture least; but an even_share of the photons as even() spreads
+    // them, so that hardly a photon weighs more than 1/even_share, and one and a half photons to each cell. At most
+    // most_cells, or even() where no sample has a value.
     static EmissionCells aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
                                double even_share, std::size_t most_cells, std::uint32_t photons);
 
@@ -43,8 +44,9 @@ class EmissionCells {
     // Share of the photons, in the order of records; their sum is 1.
     const std::vector<double>& shares() const { return shares_; }
 
-    // Photons first[c] to first[c + 1] - 1 of the pass start in cell c, at least one; first[0] = 0, the last is the photons of
-    // a pass. Each cell has the integer below or above its share of them, in the mean over seeds the share exactly.
+    // Photons first[c] to first[c + 1] - 1 of the pass start in cell c, at least one; first[0] = 0, the last is the
+    // photons of a pass. Each cell has the integer below or above its share of them, in the mean over seeds the share
+    // exactly.
     std::vector<std::uint32_t> first_photons(std::uint32_t seed, std::uint32_t pass) const;
 
   private:

@@ -50,8 +50,8 @@ std::vector<double> EmissionTrial::path_scores(const PassBuffers& pass, const Ph
         const std::uint32_t slots = maps[m].used();
         if (slots == 0) continue;
         if (scores_.size() < slots) scores_ = Buffer<float>(device_, "scores of trial photons", slots);
-        score_photons_.launch(slots, slots, m, camera, pass.constants, maps[m].heads(), maps[m].flux(), points, pass.rows,
-                              textures.records, scores_);
+        score_photons_.launch(slots, slots, m, camera, pass.constants, maps[m].heads(), maps[m].flux(), points,
+                              pass.rows, textures.records, scores_);
         const std::vector<float> of_slot = scores_.download(slots);
         const std::vector<std::uint32_t> path = maps[m].paths().download(slots);
         for (std::uint32_t slot = 0; slot < slots; ++slot)

@@ -16,8 +16,8 @@ class EmissionTrial {
   public:
     EmissionTrial(const Device& device, std::uint32_t photons);
 
-    // Takes in a pass of that many photons that the tracer has traced from these cells, into maps that tracked their paths; points:
-    // what the camera sees in it, in the order of its rays.
+    // Takes in a pass of that many photons that the tracer has traced from these cells, into maps that tracked their
+    // paths; points: what the camera sees in it, in the order of its rays.
     void add(const EmissionCells& cells, const DeviceScene& scene, const PassBuffers& pass, const PhotonMaps& maps,
              const CameraRecord& camera, const Buffer<GatherPoint>& points, const DeviceTextures& textures);
 

@@ -17,8 +17,8 @@ namespace {
 // Index of the trial pass that finds the radius; no render reaches it.
 constexpr std::uint32_t trial_pass = 0xffffffffu;
 
-// Trial passes for the aiming of photons have the indices below, and together this many photons where that takes no more of them.
-// The second half of them starts where the first half found that they should.
+// Trial passes for the aiming of photons have the indices below, and together this many photons where that takes no
+// more of them. The second half of them starts where the first half found that they should.
 constexpr std::uint32_t least_trials = 4, most_trials = 32;
 constexpr std::uint32_t all_trial_photons = 1u << 20, most_trial_photons = all_trial_photons / least_trials;
 
@@ -75,8 +75,9 @@ PhotonMaps Renderer::make_maps() {
     return {map("fluorescence"), map("single scattering"), map("multiple scattering"), map("surface")};
 }
 
-// By trial passes. The first radius is that of photons that start at random and are all stored, so that it does not depend on
-// how the scene is sampled. Local radii relate to it, whatever the scene's, but are those of the photons of its passes.
+// By trial passes. The first radius is that of photons that start at random and are all stored, so that it does not
+// depend on how the scene is sampled. Local radii relate to it, whatever the scene's, but are those of the photons of
+// its passes.
 void Renderer::set_up_passes() {
     const RenderSettings& render = scene_.render;
     const bool local = chosen_radii(render) == Radii::local;
@@ -128,8 +129,8 @@ double Renderer::find_first_radius() {
     return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
 }
 
-// By trial passes that leave nothing in the film: what their photons bring to the picture says where more should start. Their
-// wavelengths are drawn by importance, so that few passes see all of the light.
+// By trial passes that leave nothing in the film: what their photons bring to the picture says where more should start.
+// Their wavelengths are drawn by importance, so that few passes see all of the light.
 EmissionCells Renderer::aimed_cells() {
     const std::vector<EmittingLight> lights = emitting_lights(scene_, on_device_);
     const RenderSettings& render = scene_.render;

@@ -6,17 +6,17 @@
 
 // A photon counts towards a point when it is nearer than the point's radius, its normal is within 57 degrees of the
 // point's, it is not further from the tangent plane than this fraction of the radius, and it lies on the same body: so
-// no light comes through a thin wall, round an edge, down from a step or from a sheet close above. The cosine lies midway between those of a hexagon's
-// corner, 0.5, and of a cuboctahedron's edge, 0.577: normals are rounded by up to 0.007 (lib/normal.clh), and
-// all edges of a regular solid must turn out alike.
+// no light comes through a thin wall, round an edge, down from a step or from a sheet close above. The cosine lies
+// midway between those of a hexagon's corner, 0.5, and of a cuboctahedron's edge, 0.577: normals are rounded by up to
+// 0.007 (lib/normal.clh), and all edges of a regular solid must turn out alike.
 #define STOKES_GATHER_MIN_COSINE 0.54f
 #define STOKES_GATHER_MAX_HEIGHT 0.25f
 
 // Random places of a disk that are tried at most.
 #define STOKES_GATHER_MOST_TRIALS 32u
 
-// The point that a camera ray sees, directly or mirrored by smooth surfaces. Written by collect_points, read by
-// gather_radiance, one per camera ray.
+// The point that a camera ray sees, directly or mirrored by smooth surfaces. Written by collect_points, choose_radii
+// and measure_disks, read by add_direct_light, gather_radiance and those of the trial passes; one per camera ray.
 typedef struct GatherPoint {
     float x, y, z;          // [mm]
     unsigned int pixel;     // y * width + x

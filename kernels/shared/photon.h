@@ -15,7 +15,7 @@
 #define STOKES_EMPTY_SLOT 0xffffffffu
 
 // A stored photon but for its flux, which stands in the slot of the same index of a float16 buffer [W/nm].
-// Written by scatter_diffuse and deposit_exits, read by the hash build.
+// Written by scatter_diffuse, deposit_exits and walk_photons, read by the hash build and score_photons.
 typedef struct PhotonHead {
     float x, y, z;        // position on the surface [mm]
     unsigned int normal;  // the surface's outward normal and its body, by lib/normal.clh, or STOKES_EMPTY_SLOT

@@ -39,7 +39,8 @@ std::vector<EmissionSample> samples_of(std::size_t count, Square square) {
     return samples;
 }
 
-// Bright where the beam's coordinates lie in the middle tenth, a hundredth of its area, and nowhere else but for a little.
+// Bright where the beam's coordinates lie in the middle tenth, a hundredth of its area, and nowhere else but for a
+// little.
 double spot(const EmissionSample& sample) {
     if (sample.light != 0) return 0.0;
     const bool inside = std::abs(sample.place[0] - 0.5f) < 0.05f && std::abs(sample.place[1] - 0.5f) < 0.05f;
@@ -49,10 +50,13 @@ double spot(const EmissionSample& sample) {
 }  // namespace
 
 TEST_CASE("cells partition the lights, whatever the samples", "[emission]") {
-    const auto random = [](const EmissionSample& s) { return std::exp(8.0 * static_cast<double>(s.place[0] * s.place[3])); };
-    for (const EmissionCells& cells : {EmissionCells::even(lights, 20000), EmissionCells::aimed(lights, samples_of(20000, spot), 0.1, 300, 20000),
-                                       EmissionCells::aimed(lights, samples_of(20000, random), 0.2, 300, 20000),
-                                       EmissionCells::aimed(lights, {}, 0.2, 300, 20000)}) {
+    const auto random = [](const EmissionSample& s) {
+        return std::exp(8.0 * static_cast<double>(s.place[0] * s.place[3]));
+    };
+    for (const EmissionCells& cells :
+         {EmissionCells::even(lights, 20000), EmissionCells::aimed(lights, samples_of(20000, spot), 0.1, 300, 20000),
+          EmissionCells::aimed(lights, samples_of(20000, random), 0.2, 300, 20000),
+          EmissionCells::aimed(lights, {}, 0.2, 300, 20000)}) {
         double all = 0.0, shares = 0.0;
         for (std::size_t c = 0; c < cells.records().size(); ++c) {
             const EmissionCell& cell = cells.records()[c];
@@ -67,10 +71,12 @@ TEST_CASE("cells partition the lights, whatever the samples", "[emission]") {
         std::mt19937 generator(2);
         std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
         for (int i = 0; i < 200; ++i) {
-            const std::array<float, 4> place = {uniform(generator), uniform(generator), uniform(generator), uniform(generator)};
+            const std::array<float, 4> place = {uniform(generator), uniform(generator), uniform(generator),
+                                                uniform(generator)};
             for (const std::uint32_t light : {0u, 1u}) {
                 std::size_t found = 0;
-                for (const EmissionCell& cell : cells.records()) found += cell.light == light && holds(cell, place) ? 1 : 0;
+                for (const EmissionCell& cell : cells.records())
+                    found += cell.light == light && holds(cell, place) ? 1 : 0;
                 CHECK(found == 1);
             }
         }
@@ -89,8 +95,8 @@ TEST_CASE("even cells are the lights themselves", "[emission]") {
     CHECK(EmissionCells::even(lights, 5).records().empty());
 }
 
-// The least variance is that of shares in proportion to the root of the mean square: nearly all photons in the spot, of which
-// cells can cover as little as 1/64 of the beam's area (four by four cells of 1/32 by 1/32), or miss a rim.
+// The least variance is that of shares in proportion to the root of the mean square: nearly all photons in the spot, of
+// which cells can cover as little as 1/64 of the beam's area (four by four cells of 1/32 by 1/32), or miss a rim.
 TEST_CASE("aimed photons go where the light comes from", "[emission]") {
     const EmissionCells cells = EmissionCells::aimed(lights, samples_of(200000, spot), 0.1, 300, 200000);
     double inside = 0.0, most = 0.0;
@@ -109,7 +115,8 @@ TEST_CASE("aimed photons go where the light comes from", "[emission]") {
 // Of two halves with squares 16 and 1 the shares must be 4 to 1, without an even share.
 TEST_CASE("shares follow the root of the mean square", "[emission]") {
     const std::vector<EmittingLight> beam = {{1.0, false}};
-    std::vector<EmissionSample> samples = samples_of(100000, [](const EmissionSample& s) { return s.place[0] < 0.5f ? 16.0 : 1.0; });
+    std::vector<EmissionSample> samples =
+        samples_of(100000, [](const EmissionSample& s) { return s.place[0] < 0.5f ? 16.0 : 1.0; });
     for (EmissionSample& sample : samples) sample.light = 0;
     const EmissionCells cells = EmissionCells::aimed(beam, samples, 0.0, 2, 100000);
     REQUIRE(cells.records().size() == 2);
@@ -135,7 +142,8 @@ TEST_CASE("every pass gives a cell its share to the photon, and the mean of all 
         }
     }
     // The offset's discrepancy over that many passes is below 10/passes.
-    for (std::size_t c = 0; c < sums.size(); ++c) CHECK(std::abs(sums[c] / passes - cells.shares()[c] * photons) < 20.0 / passes + 1e-6);
+    for (std::size_t c = 0; c < sums.size(); ++c)
+        CHECK(std::abs(sums[c] / passes - cells.shares()[c] * photons) < 20.0 / passes + 1e-6);
     CHECK(cells.first_photons(3, 7) == cells.first_photons(3, 7));
     Sample first_cell;  // over seeds
     for (std::uint32_t seed = 0; seed < 2000; ++seed) first_cell.add(cells.first_photons(seed, 5)[1]);

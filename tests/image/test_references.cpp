@@ -63,7 +63,9 @@ TEST_CASE("the references are written", "[.make_references]") {
     for (const ReferenceSetting& setting : reference_settings) {
         LayerSamples samples;
         for (std::uint32_t render = 0; render < reference_renders; ++render) {
-            Renderer renderer(test_device(), reference_scene(setting, first_reference_seed + render));
+            Scene scene = reference_scene(setting, first_reference_seed + render);
+            scene.render.emission = Emission::random;  // the test's photons are aimed
+            Renderer renderer(test_device(), scene);
             for (std::uint32_t pass = 0; pass < reference_passes; ++pass) renderer.render_pass(pass);
             add_values(samples, renderer.image());
         }

@@ -332,3 +332,30 @@ TEST_CASE("a pixel's draws are spread over the passes", "[direct_light]") {
     CHECK(single.variance() > 0.05 * single.mean() * single.mean());
     CHECK(mean.variance() * passes < 0.25 * single.variance());
 }
+
+// Which lights are drawn and where on them must not go in step over the passes, or a pixel would see but a part of each for
+// ever.
+TEST_CASE("the draws of many lights are spread over the passes together", "[direct_light]") {
+    Bench bench;
+    bench.add_mesh(make_rectangle(400.0, 400.0));
+    for (int i = 0; i < 40; ++i) {
+        const double x = 14.0 * (i % 8 - 4), z = 14.0 * (i / 8 - 2);
+        bench.add_lamp(facing_down(make_rectangle(12.0, 12.0), {x, 15.0, z}), 1.0 + i % 3, 0.5 + i % 7);
+    }
+    const std::vector<GatherPoint> points(200, point_at({3.0, 0.0, 2.0}));
+    const std::uint32_t passes = 512;
+    std::vector<double> means(points.size(), 0.0);
+    Sample single;
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        const std::vector<double> found = bench.light_at(points, pass);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            means[i] += found[i] / passes;
+            single.add(found[i]);
+        }
+    }
+    Sample mean;
+    for (const double m : means) mean.add(m);
+    CAPTURE(single.mean(), single.variance(), mean.variance() * passes);
+    CHECK(single.variance() > 0.001 * single.mean() * single.mean());
+    CHECK(mean.variance() * passes < 0.25 * single.variance());
+}

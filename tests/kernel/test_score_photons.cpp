@@ -72,9 +72,9 @@ std::vector<float> scores_of(const Photons& photons, std::uint32_t map, const st
     const Buffer<float> scores(test_device(), "scores", slots);
     Program(test_device(), "score_photons.cl")
         .kernel("score_photons")
-        .launch(slots, slots, map, make_camera_record(camera(), width, height), on_device(std::vector<PassConstants>{pass}),
-                on_device(photons.heads), on_device(photons.flux), on_device(points),
-                on_device(std::vector<Flux16>{reflectance}), no_textures(1).records, scores);
+        .launch(slots, slots, map, make_camera_record(camera(), width, height),
+                on_device(std::vector<PassConstants>{pass}), on_device(photons.heads), on_device(photons.flux),
+                on_device(points), on_device(std::vector<Flux16>{reflectance}), no_textures(1).records, scores);
     return scores.download();
 }
 
@@ -93,7 +93,8 @@ PhotonHead head_at(double x, double y, double z, const glm::dvec3& normal = {0.0
 }  // namespace
 
 TEST_CASE("every pixel's ray is found again", "[score_photons][tiny]") {
-    for (const auto& [w, h] : std::vector<std::pair<std::uint32_t, std::uint32_t>>{{1, 1}, {7, 3}, {8, 8}, {17, 9}, {61, 43}}) {
+    for (const auto& [w, h] :
+         std::vector<std::pair<std::uint32_t, std::uint32_t>>{{1, 1}, {7, 3}, {8, 8}, {17, 9}, {61, 43}}) {
         const std::vector<std::uint32_t> rays = rays_of_pixels(w, h);
         for (std::uint32_t i = 0; i < rays.size(); ++i) REQUIRE(rays[i] == i);
     }
@@ -108,9 +109,9 @@ TEST_CASE("paths are noted at the slots of their deposits", "[score_photons][tin
     for (std::uint32_t i = 0; i < 20; ++i) CHECK(written[i] == (i >= 5 && i < 15 ? list[(i - 5) / 3] : unwritten));
 }
 
-// The density estimate itself: in a disk of radius r the photon adds value/(pi r^2) to each pixel whose point is nearer than r,
-// counted one by one; the sum of their squares is the score over pi r^2. The pixels' number in a disk of 350 of them
-// differs from its area by their perimeter's roughness, a few in a hundred.
+// The density estimate itself: in a disk of radius r the photon adds value/(pi r^2) to each pixel whose point is nearer
+// than r, counted one by one; the sum of their squares is the score over pi r^2. The pixels' number in a disk of 350 of
+// them differs from its area by their perimeter's roughness, a few in a hundred.
 TEST_CASE("a photon's score is what it adds to the squares of the pixels", "[score_photons]") {
     const CameraRecord record = make_camera_record(camera(), width, height);
     const Flux16 reflectance = constant_flux(0.5f);
@@ -121,7 +122,8 @@ TEST_CASE("a photon's score is what it adds to the squares of the pixels", "[sco
             Photons photons{{head_at(place.x, 0.0, place.y)}, {random_flux(generator, 0.5, 2.0)}};
             constexpr double radius = 10.0;
             Flux16 radiance = photons.flux[0];
-            for (float& v : radiance.v) v *= 1.25f / static_cast<float>(M_PI) * (map == STOKES_MAP_SURFACE ? 0.5f : 1.0f);
+            for (float& v : radiance.v)
+                v *= 1.25f / static_cast<float>(M_PI) * (map == STOKES_MAP_SURFACE ? 0.5f : 1.0f);
             const glm::dvec3 added = value_of(radiance) / (M_PI * radius * radius);
             double squares = 0.0;
             for (const GatherPoint& p : points)
@@ -137,13 +139,12 @@ TEST_CASE("photons that the camera does not see score nothing", "[score_photons]
     const CameraRecord record = make_camera_record(camera(), width, height);
     std::vector<GatherPoint> points = points_on_floor(record, 1u << STOKES_MAP_SINGLE, 1.0f);
     Photons photons;
-    photons.heads = {head_at(0, 0, 0),       // seen
-                     head_at(0, -6, 0),      // below the floor
-                     head_at(0, 20, 12),     // above it, in the same pixels
-                     head_at(400, 0, 0),     // beside the picture
-                     head_at(0, 100, 70),    // behind the camera
-                     head_at(0, 0, 0),
-                     head_at(0, 0, 0)};
+    photons.heads = {head_at(0, 0, 0),     // seen
+                     head_at(0, -6, 0),    // below the floor
+                     head_at(0, 20, 12),   // above it, in the same pixels
+                     head_at(400, 0, 0),   // beside the picture
+                     head_at(0, 100, 70),  // behind the camera
+                     head_at(0, 0, 0),    head_at(0, 0, 0)};
     photons.heads[5].normal = STOKES_EMPTY_SLOT;
     photons.heads[6].normal |= 1u << 24;  // of another body
     photons.flux.assign(7, constant_flux(1.0f));

@@ -1,4 +1,5 @@
-// Photons that start evenly spread, or aimed, make the same picture in the mean as those that start at random, with less noise.
+// Photons that start evenly spread, or aimed, make the same picture in the mean as those that start at random, with
+// less noise.
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -15,7 +16,7 @@ using namespace stokes;
 
 namespace {
 
-constexpr int edge = 4;               // blocks of pixels along a side
+constexpr int edge = 4;  // blocks of pixels along a side
 constexpr std::uint32_t passes = 8;
 constexpr std::size_t seeds = 10;
 
@@ -83,10 +84,11 @@ double variance(const Blocks& picture, std::size_t layer) {
     return sum;
 }
 
-// Of renders with the same seeds, which have the same wavelengths and camera rays: the differences are the photons' alone.
-// Blocks that are dark in both left out.
+// Of renders with the same seeds, which have the same wavelengths and camera rays: the differences are the photons'
+// alone. Blocks that are dark in both left out.
 void check_same(const Blocks& a, const Blocks& b) {
-    const auto check = [](const std::vector<double>& x, const std::vector<double>& y, double deviations, double most_error) {
+    const auto check = [](const std::vector<double>& x, const std::vector<double>& y, double deviations,
+                          double most_error) {
         Sample difference, level;
         for (std::size_t i = 0; i < x.size(); ++i) difference.add(x[i] - y[i]), level.add(x[i] + y[i]);
         if (!(level.mean() > 0.0)) return;
@@ -110,8 +112,8 @@ void check_same(const Blocks& a, const Blocks& b) {
 
 namespace {
 
-// 9 degrees of freedom: 6 standard errors are exceeded once in 5000, of up to 64 blocks a pair, 4.5 once in 700, of 4 layers; one
-// run in 30 of each transport would fail by chance, if its seeds were not fixed.
+// 9 degrees of freedom: 6 standard errors are exceeded once in 5000, of up to 64 blocks a pair, 4.5 once in 700, of 4
+// layers; one run in 30 of each transport would fail by chance, if its seeds were not fixed.
 void check_emission(Transport transport) {
     const Scene scene = world(transport);
     const Blocks random = rendered(scene, Emission::random, 1), even = rendered(scene, Emission::stratified, 1),
@@ -131,4 +133,6 @@ TEST_CASE("aimed and stratified emission leave the picture as it is, with less n
     check_emission(Transport::conserving);
 }
 
-TEST_CASE("the same by the paper's tables", "[emission][.long]") { check_emission(Transport::paper); }
+TEST_CASE("the same by the paper's tables", "[emission][.long]") {
+    check_emission(Transport::paper);
+}

@@ -12,13 +12,14 @@ using namespace stokes;
 
 namespace {
 
-constexpr std::uint32_t passes = 140;
+constexpr std::uint32_t passes = 180;
 
 using Layers = std::array<std::array<Sample, 3>, component_count>;  // X, Y, Z
 
 // Means over the picture of each layer, a sample a pass.
 Layers measured(Scene scene, Wavelengths wavelengths) {
     scene.render.wavelengths = wavelengths;
+    scene.render.emission = Emission::random;  // aimed photons have noise of their own where little light is
     scene.render.photons_per_pass = 12000;
     scene.render.radius_mm = 12.0;
     scene.render.alpha = 1.0;
