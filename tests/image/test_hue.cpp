@@ -108,7 +108,7 @@ glm::dvec3 emitted_by_lamp(const Scene& scene, const Fluorophore& dots, std::uin
     });
 }
 
-constexpr std::uint32_t passes = 64;
+constexpr std::uint32_t passes = 192;
 
 Scene prisms() {
     Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/prisms.json");
