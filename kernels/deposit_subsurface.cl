@@ -6,6 +6,7 @@
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/light_sum.clh"
+#include "lib/low_discrepancy.clh"
 #include "lib/normal.clh"
 #include "lib/power_table.clh"
 #include "lib/reradiation.clh"
@@ -16,13 +17,20 @@
 // Optical lengths beyond this let nothing through: exp(-40) = 4e-18.
 #define OPAQUE_DEPTH 40.0f
 
-// Model `paper`: at distance r from the entry, r drawn from the component's table, azimuth uniform (STEP 2 and 3).
+// Model `paper`: at distance r from the entry, azimuth uniform (STEP 2 and 3). r is drawn from the component's table, or,
+// from drawn_rows on, from another density, and what leaves is weighted with the table's over that.
 FORCE_INLINE PlanePoint paper_exit(float3 entry, float3 normal, float3 direction, float eta, TableShape shape,
                                    __global const float* mean_rows, __global const float* cumulative_rows,
-                                   Random4 draw) {
+                                   uint drawn_rows, Random4 draw) {
     const float row = refraction_angle_deg(-dot(direction, normal), eta);
-    const float r_mm = sample_distance(mean_rows, cumulative_rows, shape, row, draw.a);
-    return about_entry(entry, normal, r_mm, row, draw.b);
+    const float r_mm = sample_distance(mean_rows + drawn_rows, cumulative_rows + drawn_rows, shape, row, draw.a);
+    PlanePoint p = about_entry(entry, normal, r_mm, row, draw.b);
+    if (drawn_rows > 0u) {
+        const float drawn =
+            distance_density(mean_rows + drawn_rows, cumulative_rows + drawn_rows, shape, row, r_mm);
+        if (drawn > 0.0f) p.scale = distance_density(mean_rows, cumulative_rows, shape, row, r_mm) / drawn;
+    }
+    return p;
 }
 
 // Model `conserving`: about the foot of the first collision, which lies way_mm along the refracted ray. Direct: where a
@@ -72,17 +80,26 @@ FORCE_INLINE Random4 stratified(Random4 first, uint k, uint count) {
     return draw;
 }
 
+// The draw of a photon's first event that goes with the place where it started: a is its distance or direction, b its
+// azimuth. Each stream scrambles it for itself.
+FORCE_INLINE Random4 even_draw(EventWords words, uint seed, uint stream) {
+    Random4 draw = {0.0f, 0.0f, 0.0f, 0.0f};
+    draw.a = uniform_from_word(owen_scramble(words.distance, dimension_seed(~seed, 2u * stream)));
+    draw.b = uniform_from_word(owen_scramble(words.azimuth, dimension_seed(~seed, 2u * stream + 1u)));
+    return draw;
+}
+
 // Work-items: round.count, one an entry of list.
 // Reads: list, points, rays (incident direction), materials, spectra (sigma_t), table_shapes [3 a medium], mean_rows and
-//   cumulative_rows of the distance samplers.
+//   cumulative_rows of the distance samplers, event_words [paths] where pass->even_exits has them.
 // Writes: exits and probes at round.first_exit + i round.exits and on: round.exits points of the tangent plane, as
 //   round.sampler has it. Without subsurface: the entry itself, once, from which nothing leaves scattered.
 __kernel void sample_exits(EventRound round, __global const PassConstants* pass, __global const uint* list,
                            __global const SurfacePoint* points, __global const Ray* rays,
                            __global const MaterialRecord* materials, __global const float16* spectra,
                            __global const TableShape* table_shapes, __global const float* mean_rows,
-                           __global const float* cumulative_rows, __global ExitPoint* exits,
-                           __global Probe* probes) {
+                           __global const float* cumulative_rows, __global const EventWords* event_words,
+                           __global ExitPoint* exits, __global Probe* probes) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint path = list[i];
@@ -101,13 +118,16 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
     const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
     const TableShape shape = table_shapes[material->medium * 3u + round.component];
     const uint stream = RNG_EXIT + (round.sampler == STOKES_SAMPLER_SCATTERED ? 3u : 0u) + round.component;
-    const Random4 first_draw = random4(pass->seed, pass->pass, path, round.event, stream);
+    const Random4 first_draw = round.event == 0u && pass->even_exits != 0u
+                                   ? even_draw(event_words[path], pass->seed, stream)
+                                   : random4(pass->seed, pass->pass, path, round.event, stream);
     const Random4 branch = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
     for (uint k = 0u; k < round.exits; ++k) {
         const Random4 draw = stratified(first_draw, k, round.exits);
         PlanePoint p;
         if (round.sampler == STOKES_SAMPLER_PAPER) {
-            p = paper_exit(entry, normal, direction, material->eta, shape, mean_rows, cumulative_rows, draw);
+            p = paper_exit(entry, normal, direction, material->eta, shape, mean_rows, cumulative_rows,
+                           round.drawn_rows, draw);
         } else {
             p = conserving_exit(entry, normal, direction, material, spectra, round.sampler, shape, mean_rows,
                                 cumulative_rows, branch, draw);

@@ -51,19 +51,23 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
 // Work-items: pass->photons, one a path.
 // Reads: cells [cell_count], first_photons [cell_count + 1]: the photons of cell c are first_photons[c] to
 //   first_photons[c + 1] - 1, one at least; the rest as emit_photons.
-// Writes: as emit_photons; flux times the cell's probability over the share of the photons that start in it.
+// Writes: as emit_photons, and event_words [paths]; flux times the cell's probability over the share of the photons that
+//   start in it.
 // The photons of a cell lie on it as the points of a low-discrepancy sequence that goes on from pass to pass.
 __kernel void emit_stratified(__global const PassConstants* pass, uint cell_count, __global const EmissionCell* cells,
                               __global const uint* first_photons, __global const LightRecord* lights,
                               __global const float* light_areas, __global const Triangle* triangles,
                               __global const float16* photon_flux, __global Ray* rays, __global float16* flux,
-                              __global PathLedger* ledgers, __global uint* list) {
+                              __global PathLedger* ledgers, __global uint* list, __global EventWords* event_words) {
     const uint path = (uint)get_global_id(0);
     if (path >= pass->photons) return;
     const uint c = cell_of_photon(first_photons, cell_count, path);
     __global const LightRecord* light = &lights[cells[c].light];
-    const float4 place =
-        place_of_photon(pass, &cells[c], c, path - first_photons[c], light->kind == STOKES_LIGHT_SURFACE);
+    const bool directions = light->kind == STOKES_LIGHT_SURFACE;
+    const SequencePoint point = point_of_photon(pass, &cells[c], c, path - first_photons[c]);
+    const uint2 words = words_of_event(point, directions);
+    event_words[path] = (EventWords){words.x, words.y};
+    const float4 place = place_of_point(point, &cells[c], directions);
     const EmittedRay start = emitted_ray(light, light_areas, triangles, pass->offset_mm, place);
     const uint count = first_photons[c + 1u] - first_photons[c];
     const float weight = cells[c].probability * (float)pass->photons / (float)count;
@@ -80,6 +84,6 @@ __kernel void find_places(__global const PassConstants* pass, uint cell_count, _
     if (path >= pass->photons) return;
     const uint c = cell_of_photon(first_photons, cell_count, path);
     cell_of_path[path] = c;
-    places[path] = place_of_photon(pass, &cells[c], c, path - first_photons[c],
-                                   lights[cells[c].light].kind == STOKES_LIGHT_SURFACE);
+    places[path] = place_of_point(point_of_photon(pass, &cells[c], c, path - first_photons[c]), &cells[c],
+                                  lights[cells[c].light].kind == STOKES_LIGHT_SURFACE);
 }

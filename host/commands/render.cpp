@@ -35,7 +35,7 @@ extern "C" void catch_signal(int signal) {
 
 struct RenderOptions {
     std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
-    std::string reference_file, csv_file, sampling, wavelengths, branches, emission, direct, radii;
+    std::string reference_file, csv_file, sampling, wavelengths, branches, distances, emission, direct, radii;
     int passes = 0, every = 0, exits = 0;
     DeviceFlags device;
     std::int64_t photons = 0;
@@ -62,6 +62,7 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
         render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
         render.wavelengths.reset();
         render.branches.reset();
+        render.distances.reset();
         render.exits.reset();
         render.emission.reset();
         render.direct.reset();
@@ -73,6 +74,13 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
         if (render.transport == Transport::walk)
             throw InputError("--branches: expected transport \"paper\" or \"conserving\", got \"walk\"");
         render.branches = static_cast<Branches>(index_of_word(options.branches, branches_words));
+    }
+    if (command.count("--distances")) {
+        if (render.transport != Transport::paper)
+            throw InputError("--distances: expected transport \"paper\", got \"" +
+                             transport_words[static_cast<std::size_t>(render.transport)] + "\"");
+        if (!render.tables) throw InputError("--distances: expected power tables, got --no-tables");
+        render.distances = static_cast<Distances>(index_of_word(options.distances, distances_words));
     }
     if (command.count("--exits")) {
         if (render.transport != Transport::conserving)
@@ -109,6 +117,7 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
             {"stokes.transport", stats.transport},
             {"stokes.wavelengths", stats.wavelengths},
             {"stokes.branches", stats.branches},
+            {"stokes.distances", stats.distances},
             {"stokes.exits", stats.exits},
             {"stokes.emission", stats.emission},
             {"stokes.direct", stats.direct},
@@ -136,6 +145,7 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
     stats.tables = scene.render.transport != Transport::walk && scene.render.tables;
     stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
     stats.branches = branches_words[static_cast<std::size_t>(chosen_branches(scene.render))];
+    stats.distances = distances_words[static_cast<std::size_t>(chosen_distances(scene.render))];
     stats.exits = chosen_exits(scene.render);
     stats.emission = emission_words[static_cast<std::size_t>(chosen_emission(scene.render))];
     stats.direct = direct_words[static_cast<std::size_t>(chosen_direct(scene.render))];
@@ -314,6 +324,12 @@ void add_render_command(CLI::App& app) {
                      "What a photon stores where it enters: one branch, or both; default: both with conserving")
         ->type_name("HOW")
         ->check(word_of(branches_words));
+    command
+        ->add_option("--distances", options->distances,
+                     "Transport paper: how far light leaves from its entry, from the power table or where more of it "
+                     "leaves; default: importance")
+        ->type_name("HOW")
+        ->check(word_of(distances_words));
     command->add_option("--exits", options->exits, "Transport conserving: exit points an entry; default 1")
         ->type_name("N")
         ->check(CLI::Range(1, most_exits));

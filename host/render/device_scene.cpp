@@ -99,7 +99,7 @@ IntegratedMedia upload_integrated_media(const Device& device, const Scene& scene
 DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
     const std::vector<bool> needed = needed_media(scene);
     std::vector<TableShape> shapes;
-    std::vector<float> values, mean_rows, cumulative_rows;
+    std::vector<float> values, mean_rows, cumulative_rows, weighted, weighted_cumulative;
     DeviceTables result;
     for (std::size_t m = 0; m < scene.media.size(); ++m) {
         if (!needed[m]) {
@@ -115,9 +115,13 @@ DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
             append(values, device_layout(table));
             append(mean_rows, sampler.mean_rows);
             append(cumulative_rows, sampler.cumulative_rows);
+            append(weighted, sampler.weighted_rows);
+            append(weighted_cumulative, sampler.weighted_cumulative_rows);
         }
     }
-    result.entries = static_cast<std::uint32_t>(mean_rows.size());
+    result.entries = result.weighted_rows = static_cast<std::uint32_t>(mean_rows.size());
+    append(mean_rows, weighted);
+    append(cumulative_rows, weighted_cumulative);
     result.shapes = Buffer<TableShape>(device, "power table shapes", shapes);
     result.values = Buffer<float>(device, "power tables", values);
     result.mean_rows = Buffer<float>(device, "distance densities", mean_rows);

@@ -34,8 +34,9 @@ struct GreenOwner {
 struct DeviceTables {
     Buffer<TableShape> shapes;             // [3 owners]
     Buffer<float> values;                  // paper: [entry][lambda]
-    Buffer<float> mean_rows;               // [entry] distance densities
-    Buffer<float> cumulative_rows;         // [entry]
+    Buffer<float> mean_rows;               // [entry] distance densities; paper: then those of DistanceSampler's weighted_rows
+    Buffer<float> cumulative_rows;         // likewise
+    std::uint32_t weighted_rows = 0;       // paper: where these start
     Buffer<Flux16> at_wavelengths;         // [entry] at the pass's wavelengths
     EvenAxis wavelengths;                  // of values [nm]
     std::uint32_t entries = 0;

@@ -32,6 +32,7 @@ PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene
     buffers_.both_branches =
         scene.render.transport != Transport::walk && chosen_branches(scene.render) == Branches::both;
     buffers_.store_direct = chosen_direct(scene.render) == Direct::photons;
+    buffers_.weighted_distances = chosen_distances(scene.render) == Distances::importance;
     buffers_.exits = static_cast<std::uint32_t>(chosen_exits(scene.render));
     const DeviceTables& tables = on_device.tables;
     if (tables.values.size() > 0) resample_ = Program(device, "resample_tables.cl").kernel("resample_table");
@@ -49,6 +50,7 @@ void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std
     spectra_ = make_pass_spectra(scene_, on_device_.light_probability, on_device_.light_surface_area_mm2, wavelengths,
                                  pass, photons);
     spectra_.constants.offset_mm = on_device_.offset_mm;
+    spectra_.constants.even_exits = buffers_.cell_count > 0 ? 1u : 0u;
     buffers_.constants.upload(&spectra_.constants, 1);
     buffers_.rows.upload(spectra_.rows);
     buffers_.photon_flux.upload(spectra_.photon_flux);

@@ -29,6 +29,7 @@ PhotonTracer::PhotonTracer(const Device& device, const RayKernels& kernels, std:
       flux_(device, "photon flux", paths),
       ledgers_(device, "photon ledgers", paths),
       points_(device, "surface points", paths),
+      event_words_(device, "event words", paths),
       alive_(device, "photon list", paths),
       next_alive_(device, "next photon list", paths),
       diffuse_(device, "diffuse list", paths),
@@ -89,7 +90,7 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
 void PhotonTracer::emit(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons) {
     if (pass.cell_count > 0)
         emit_stratified_.launch(photons, pass.constants, pass.cell_count, pass.cells, pass.first_photons, scene.lights,
-                                scene.light_areas, scene.triangles, pass.photon_flux, rays_, flux_, ledgers_, alive_);
+                                scene.light_areas, scene.triangles, pass.photon_flux, rays_, flux_, ledgers_, alive_, event_words_);
     else
         emit_.launch(photons, pass.constants, scene.light_count, scene.lights, scene.light_areas, scene.triangles,
                      pass.photon_flux, rays_, flux_, ledgers_, alive_);
@@ -177,6 +178,7 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
             EventRound r = round;
             r.branches = branches;
             r.component = group.component;
+            r.drawn_rows = pass.weighted_distances ? scene.tables.weighted_rows : 0;
             r.sampler = group.sampler;
             r.count = branches != 0 ? lists.branches : fluoresces(r) ? lists.fluorescence : walking ? 0 : lists.elastic;
             r.first_exit = static_cast<std::uint32_t>(all_exits);
@@ -219,7 +221,7 @@ void PhotonTracer::sample_exits(const DeviceScene& scene, const PassBuffers& pas
     const Buffer<std::uint32_t>& list = list_of(round);
     if (!scene.integrated) {
         sample_exits_.launch(round.count, round, pass.constants, list, points_, rays_, scene.materials, pass.rows,
-                             scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, exits_,
+                             scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, event_words_, exits_,
                              probes_);
         return;
     }

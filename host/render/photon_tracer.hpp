@@ -22,6 +22,7 @@ struct PassBuffers {
     Buffer<Flux16> radiance;     // [lights]; of beams the irradiance across them
     bool both_branches = false;  // light below a surface goes both ways, by fluorophore and past it: chosen_branches()
     std::uint32_t exits = 1;     // of an event and component
+    bool weighted_distances = false;  // `paper`: chosen_distances()
     bool store_direct = true;    // false: photons straight from a light are not stored at diffuse surfaces
     // Where photons start; without cells anywhere on the lights, at random.
     std::uint32_t cell_count = 0;
@@ -76,6 +77,7 @@ class PhotonTracer {
     Buffer<Flux16> flux_;
     Buffer<PathLedger> ledgers_;
     Buffer<SurfacePoint> points_;
+    Buffer<EventWords> event_words_;
     Buffer<std::uint32_t> alive_, next_alive_, diffuse_, fluorescence_, elastic_, branches_;
     Buffer<std::uint8_t> kinds_;
     Buffer<ListCounts> chunk_counts_, totals_;

@@ -49,6 +49,7 @@ void write_stats(const RenderStats& s, const std::string& path) {
     add("tables", s.tables ? "true" : "false");
     add("wavelengths", json_quoted(s.wavelengths));
     add("branches", json_quoted(s.branches));
+    add("distances", json_quoted(s.distances));
     add("exits", std::to_string(s.exits));
     add("emission", json_quoted(s.emission));
     add("direct", json_quoted(s.direct));

@@ -10,7 +10,7 @@
 namespace stokes {
 
 struct RenderStats {
-    std::string scene, device, driver, ray_kernel, transport, wavelengths, branches, emission, direct, radii;
+    std::string scene, device, driver, ray_kernel, transport, wavelengths, branches, distances, emission, direct, radii;
     int exits = 1;            // of an entry and component
     bool tables = true;       // light below surfaces was looked up in tables
     std::uint32_t passes = 0, seed = 0;

@@ -58,6 +58,12 @@ inline const std::vector<std::string> emission_words = {"random", "stratified", 
 enum class Direct { photons, rays };
 inline const std::vector<std::string> direct_words = {"photons", "rays"};
 
+// Model `paper`: how far from its entry light leaves is drawn as the paper has it, from the power table, or where more of it
+// leaves, from the table's square, with weights; the mean is the same. As scene files and the command line spell them,
+// in order.
+enum class Distances { table, importance };
+inline const std::vector<std::string> distances_words = {"table", "importance"};
+
 // The radius of the density estimate: one for the whole picture, or more where photons are few. As scene files and the
 // command line spell them, in order.
 enum class Radii { one, local };
@@ -87,6 +93,7 @@ struct RenderSettings {
     std::optional<Emission> emission;        // none: by sampling
     std::optional<Direct> direct;            // none: by sampling
     std::optional<Radii> radii;              // none: by sampling
+    std::optional<Distances> distances;      // paper, with tables; none: by sampling
     std::optional<int> exits;                // conserving: exit points an entry and component; none: by sampling
 };
 
@@ -110,6 +117,12 @@ inline Emission chosen_emission(const RenderSettings& render) {
 // By rays, unless plain samplers are asked for.
 inline Direct chosen_direct(const RenderSettings& render) {
     return render.direct.value_or(render.sampling == Sampling::plain ? Direct::photons : Direct::rays);
+}
+
+// By importance, unless plain samplers are asked for; `table` where no power tables are.
+inline Distances chosen_distances(const RenderSettings& render) {
+    if (render.transport != Transport::paper || !render.tables) return Distances::table;
+    return render.distances.value_or(render.sampling == Sampling::plain ? Distances::table : Distances::importance);
 }
 
 // One, unless others are asked for.

@@ -33,6 +33,8 @@ RenderSettings read_render_settings(const JsonCursor& render) {
         s.emission = static_cast<Emission>(emission->choice(emission_words));
     if (const auto direct = render.find("direct")) s.direct = static_cast<Direct>(direct->choice(direct_words));
     if (const auto radii = render.find("radii")) s.radii = static_cast<Radii>(radii->choice(radii_words));
+    if (const auto distances = render.find("distances"))
+        s.distances = static_cast<Distances>(distances->choice(distances_words));
     if (const auto exits = render.find("exits")) s.exits = static_cast<int>(exits->integer(1, most_exits));
     if (s.lambda_max_nm - s.lambda_min_nm + 1 < wavelengths_per_pass) {
         render.fail(fmt::format(

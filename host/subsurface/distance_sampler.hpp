@@ -14,6 +14,9 @@ namespace stokes {
 struct DistanceSampler {
     std::vector<float> mean_rows;        // [the table's unit]
     std::vector<float> cumulative_rows;  // [the table's unit * mm]
+    // The same for the density of what leaves there: the mean times itself, over the square of the table's largest.
+    std::vector<float> weighted_rows;             // [1]
+    std::vector<float> weighted_cumulative_rows;  // [mm]
     TableShape shape{};
 };
 

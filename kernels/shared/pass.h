@@ -33,7 +33,8 @@ typedef struct PassConstants {
     unsigned int even_pixels;  // 1: camera rays cover a pixel evenly over passes; 0: independent ones (sampling plain)
     unsigned int strata[16];  // each wavelength's stratum, 0 to 15, never decreasing
     float level_shares[STOKES_STRATA_LEVELS];  // how often sets are drawn in 1, 2, 4, 8, 16 bands of equal counts
-    float pad1[3];
+    unsigned int even_exits;  // 1: exits of a photon's first event lie at its EventWords; 0: at random
+    float pad1[2];
 } PassConstants;
 STOKES_ASSERT_SIZE(PassConstants, 448);
 

@@ -75,6 +75,13 @@ typedef struct SurfacePoint {
 } SurfacePoint;
 STOKES_ASSERT_SIZE(SurfacePoint, 32);
 
+// Two coordinates of a photon's low-discrepancy point, for its first event, as scrambled binary digits, the first one
+// lowest: distance and azimuth of where light leaves that entered there. Written by emit_stratified.
+typedef struct EventWords {
+    unsigned int distance, azimuth;
+} EventWords;
+STOKES_ASSERT_SIZE(EventWords, 8);
+
 // EventRound.sampler: how exit points are found and what leaves there.
 #define STOKES_SAMPLER_PAPER 0u      // distance from the component's power table, PHYSICS section 3
 #define STOKES_SAMPLER_DIRECT 1u     // straight from the first collision to the surface: G0 of PHYSICS section 4
@@ -92,7 +99,7 @@ typedef struct ExitPoint {
     unsigned int path;
     unsigned int material;
     float way_mm;        // to the first collision, along the refracted ray
-    float scale;         // factor on what leaves: PAPER 1, DIRECT 1/density of the direction, SCATTERED 1/density of r,
+    float scale;         // factor on what leaves: PAPER the table's density of r over the drawn one, DIRECT 1/density of the direction, SCATTERED 1/density of r,
                          // both over the number of exits
     LightSum kept;         // the deposited flux; PAPER: before the branch's weight
     LightSum event_light;  // PAPER: re-emitted as fluorescence; DIRECT: what the first collision sends on; SCATTERED:
@@ -113,7 +120,7 @@ typedef struct EventRound {
     unsigned int last;         // 1: paths that would go on are cut and counted
     unsigned int exits;        // exits of an event and component, at least 1
     unsigned int branches;     // 1: the events are STOKES_EVENT_BRANCHES, or translucent ones may become that
-    unsigned int pad;
+    unsigned int drawn_rows;   // PAPER: first entry of the distance densities that r is drawn from; 0: the tables' own
 } EventRound;
 STOKES_ASSERT_SIZE(EventRound, 48);
 

@@ -143,4 +143,21 @@ TEST_CASE("the sampler holds the mean over all wavelengths and its trapezoidal i
             CHECK(sampler.cumulative_rows[row * 4 + r] == Approx(integral).epsilon(1e-6));
         }
     }
+    const float largest = *std::max_element(sampler.mean_rows.begin(), sampler.mean_rows.end());
+    REQUIRE(sampler.weighted_rows.size() == 12);
+    for (std::size_t row = 0; row < 3; ++row) {
+        float integral = 0.0f;
+        for (std::size_t i = row * 4; i < row * 4 + 4; ++i) {
+            const float relative = sampler.mean_rows[i] / largest;
+            CHECK(sampler.weighted_rows[i] == Approx(relative * relative).epsilon(1e-5));
+            if (i > row * 4) integral += 0.25f * (sampler.weighted_rows[i - 1] + sampler.weighted_rows[i]);
+            CHECK(sampler.weighted_cumulative_rows[i] == Approx(integral).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("a medium that does not scatter has densities of 0, not of nothing", "[power_table]") {
+    const DistanceSampler sampler = make_distance_sampler(make_single_table(constant_medium(0.0, 0.1), small_grid()));
+    for (const float density : sampler.weighted_rows) CHECK(density == 0.0f);
+    for (const float integral : sampler.weighted_cumulative_rows) CHECK(integral == 0.0f);
 }

@@ -93,6 +93,8 @@ TEST_CASE("Bad scenes: render, film and camera") {
         {"780", "831", ":3: render.lambda_max_nm: expected an integer in [300, 830], got 831"},
         {"\"seed\": 9", "\"sampling\": \"best\", \"wavelengths\": \"uniformly\"",
          ":3: render.wavelengths: expected \"uniform\" or \"importance\", got \"uniformly\""},
+        {"\"seed\": 9", "\"distances\": \"far\"",
+         ":3: render.distances: expected \"table\" or \"importance\", got \"far\""},
         {"\"seed\": 9", "\"branches\": \"one\"",
          ":3: render.branches: expected \"roulette\" or \"both\", got \"one\""},
         {"\"seed\": 9", "\"emission\": \"even\"",

@@ -119,6 +119,22 @@ TEST_CASE("Branches and exits are as the scene says, or by its sampling and tran
     CHECK(chosen_branches(render(R"(, "branches": "roulette")")) == Branches::roulette);
 }
 
+TEST_CASE("Distances of the model paper are as the scene says, or by its sampling") {
+    const auto render = [](const std::string& settings) {
+        return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;
+    };
+    CHECK(chosen_distances(render("")) == Distances::importance);
+    CHECK(chosen_distances(render(R"(, "distances": "table")")) == Distances::table);
+    CHECK(chosen_distances(render(R"(, "sampling": "plain")")) == Distances::table);
+    RenderSettings given = render(R"(, "sampling": "plain", "distances": "importance")");
+    CHECK(chosen_distances(given) == Distances::importance);
+    given.tables = false;
+    CHECK(chosen_distances(given) == Distances::table);
+    given.tables = true;
+    given.transport = Transport::conserving;
+    CHECK(chosen_distances(given) == Distances::table);
+}
+
 TEST_CASE("Emission, direct light and radii are as the scene says, or by its sampling") {
     const auto render = [](const std::string& settings) {
         return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;

@@ -89,6 +89,7 @@ TEST_CASE("The schema has the reader's limits") {
     CHECK(property("material_diffuse", "reflectance").at("$ref") == "#/$defs/reflectance");
     CHECK(schema.at("$defs").at("reflectance").at("oneOf").at(0).at("$ref") == "#/$defs/spectrum_up_to_1");
     CHECK(property("render", "branches").at("enum") == branches_words);
+    CHECK(property("render", "distances").at("enum") == distances_words);
     CHECK(property("render", "emission").at("enum") == emission_words);
     CHECK(property("render", "direct").at("enum") == direct_words);
     CHECK(property("render", "radii").at("enum") == radii_words);

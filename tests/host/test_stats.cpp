@@ -20,6 +20,7 @@ RenderStats example() {
     stats.tables = false;
     stats.wavelengths = "importance";
     stats.branches = "both";
+    stats.distances = "importance";
     stats.emission = "aimed";
     stats.direct = "rays";
     stats.radii = "one";
@@ -69,6 +70,7 @@ TEST_CASE("the statistics hold every figure under its name", "[stats]") {
     CHECK(json.at("tables") == false);
     CHECK(json.at("wavelengths") == "importance");
     CHECK(json.at("branches") == "both");
+    CHECK(json.at("distances") == "importance");
     CHECK(json.at("emission") == "aimed");
     CHECK(json.at("direct") == "rays");
     CHECK(json.at("radii") == "one");

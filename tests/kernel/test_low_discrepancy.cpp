@@ -53,10 +53,11 @@ TEST_CASE("unscrambled points are those of Sobol', Joe and Kuo", "[low_discrepan
         std::uint32_t degree, polynomial;
         std::vector<std::uint32_t> m;
     };
-    const std::array<Row, 3> rows = {{{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}}};
-    std::array<std::array<std::uint32_t, 32>, 4> directions;
+    const std::array<Row, 5> rows = {
+        {{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}}, {4, 1, {1, 1, 3, 3}}}};
+    std::array<std::array<std::uint32_t, 32>, 6> directions;
     for (std::uint32_t k = 0; k < 32; ++k) directions[0][k] = 0x80000000u >> k;
-    for (std::size_t d = 1; d < 4; ++d) {
+    for (std::size_t d = 1; d < 6; ++d) {
         const auto& [s, a, first] = rows[d - 1];
         std::vector<std::uint32_t> m = first;
         for (std::uint32_t k = s; k < 32; ++k) {
@@ -68,15 +69,15 @@ TEST_CASE("unscrambled points are those of Sobol', Joe and Kuo", "[low_discrepan
     }
     for (const std::uint32_t start : {0u, 0xffffff80u, 0x9e377900u}) {
         const std::uint32_t n = 128;
-        const Buffer<std::uint32_t> buffer(test_device(), "words", n * 4);
+        const Buffer<std::uint32_t> buffer(test_device(), "words", n * 6);
         test_program("low_discrepancy.cl").kernel("unscrambled_words").launch(n, buffer, start, n);
         const std::vector<std::uint32_t> words = buffer.download();
         for (std::uint32_t i = 0; i < n; ++i)
-            for (std::size_t d = 0; d < 4; ++d) {
+            for (std::size_t d = 0; d < 6; ++d) {
                 std::uint32_t word = 0;
                 for (std::uint32_t k = 0; k < 32; ++k)
                     if (((start + i) >> k) & 1u) word ^= directions[d][k];
-                REQUIRE(words[i * 4 + d] == word);
+                REQUIRE(words[i * 6 + d] == word);
             }
     }
 }
@@ -95,6 +96,23 @@ TEST_CASE("2^m scrambled points are a net", "[low_discrepancy][tiny]") {
                         for (int c = 0; a + b + c <= m - 3; ++c)
                             REQUIRE(even(block_points, {a, b, c, m - 3 - a - b - c}));
             }
+}
+
+TEST_CASE("later dimensions are the same point's, and even", "[low_discrepancy][tiny]") {
+    for (const std::uint32_t seed : {0u, 9u})
+        for (int m = 0; m <= 8; ++m) {
+            const std::uint32_t n = 1u << m, first = 3u * n;
+            const Buffer<Point4> buffer(test_device(), "points", n);
+            test_program("low_discrepancy.cl").kernel("later_points").launch(n, first, seed, buffer, n);
+            const std::vector<Point4> later = buffer.download(), four = points(first, seed, n);
+            for (std::uint32_t i = 0; i < n; ++i)
+                REQUIRE((later[i].u[0] == four[i].u[2] && later[i].u[1] == four[i].u[3]));
+            for (std::size_t d = 0; d < 4; ++d) {
+                std::array<int, 4> cuts{};
+                cuts[d] = m;
+                REQUIRE(even(later, cuts));
+            }
+        }
 }
 
 TEST_CASE("many scrambled points are a net up to the last indices", "[low_discrepancy]") {

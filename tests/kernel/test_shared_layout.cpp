@@ -72,7 +72,7 @@ using namespace stokes;
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
         F(PassConstants, offset_mm) F(PassConstants, transport) F(PassConstants, first_collision_only) \
         F(PassConstants, stratified) F(PassConstants, even_pixels) F(PassConstants, strata) \
-        F(PassConstants, level_shares) F(PassConstants, pad1) \
+        F(PassConstants, level_shares) F(PassConstants, even_exits) F(PassConstants, pad1) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \
         F(PathLedger, stored) F(PathLedger, fate) F(PathLedger, missed_exits) F(PathLedger, rays) \
@@ -84,13 +84,14 @@ using namespace stokes;
     S(WalkSlots) F(WalkSlots, first) F(WalkSlots, limit) F(WalkSlots, pad) \
     S(SurfacePoint) F(SurfacePoint, x) F(SurfacePoint, y) F(SurfacePoint, z) F(SurfacePoint, material) \
         F(SurfacePoint, nx) F(SurfacePoint, ny) F(SurfacePoint, nz) F(SurfacePoint, body) \
+    S(EventWords) F(EventWords, distance) F(EventWords, azimuth) \
     S(ExitPoint) F(ExitPoint, x) F(ExitPoint, y) F(ExitPoint, z) F(ExitPoint, r_mm) F(ExitPoint, nx) \
         F(ExitPoint, ny) F(ExitPoint, nz) F(ExitPoint, row) F(ExitPoint, path) F(ExitPoint, material) \
         F(ExitPoint, way_mm) F(ExitPoint, scale) F(ExitPoint, kept) F(ExitPoint, event_light) \
     S(EventRound) F(EventRound, count) F(EventRound, event) F(EventRound, component) F(EventRound, sampler) \
         F(EventRound, first_exit) F(EventRound, first_slot) F(EventRound, slot_limit) \
         F(EventRound, second_exit) F(EventRound, last) F(EventRound, exits) F(EventRound, branches) \
-        F(EventRound, pad) \
+        F(EventRound, drawn_rows) \
     S(ExitGroups) F(ExitGroups, count) F(ExitGroups, component) F(ExitGroups, first_exit) \
         F(ExitGroups, first_slot) F(ExitGroups, slot_limit) F(ExitGroups, pad) \
     S(ListCounts) F(ListCounts, alive) F(ListCounts, diffuse) F(ListCounts, fluorescence) \

@@ -21,6 +21,7 @@ struct MadeUpTables {
     std::vector<TableShape> shapes;
     std::vector<Flux16> at_wavelengths;
     std::vector<float> mean_rows, cumulative_rows;
+    std::uint32_t drawn_rows = 0;  // where other densities of the same shapes start, to draw distances from
 
     MadeUpTables() {
         std::mt19937 generator(101);
@@ -38,16 +39,41 @@ struct MadeUpTables {
             for (unsigned row = 0; row < shape.row_count; ++row)
                 for (unsigned r = 0; r < shape.r_count; ++r) {
                     at_wavelengths.push_back(random_flux(generator, 0.05, component == 0 ? 1.6 : 0.6));
-                    mean_rows.push_back(uniform(generator));
-                    const std::size_t here = mean_rows.size() - 1;
-                    cumulative_rows.push_back(r == 0 ? 0.0f
-                                                     : cumulative_rows.back() +
-                                                           0.5f * (mean_rows[here - 1] + mean_rows[here]) *
-                                                               shape.r_step);
+                    add_density(uniform(generator), r, shape.r_step);
                 }
         }
+        drawn_rows = std::uint32_t(mean_rows.size());
+        for (const TableShape& shape : shapes)
+            for (unsigned i = 0; i < shape.row_count * shape.r_count; ++i)
+                add_density(uniform(generator), i % shape.r_count, shape.r_step);
     }
 
+    // The density with which a distance is drawn at that row [1/mm], from the densities that start at first.
+    double density(unsigned table, double row_deg, double r_mm, std::uint32_t first) const {
+        const TableShape& shape = shapes[table];
+        const auto at = [](double value, double begin, double step, unsigned count) {
+            return std::clamp((value - begin) / step, 0.0, double(count - 1));
+        };
+        const double row = at(row_deg, double(shape.row_first), double(shape.row_step), shape.row_count),
+                     r = at(r_mm, double(shape.r_first), double(shape.r_step), shape.r_count);
+        double value = 0.0, total = 0.0;
+        for (unsigned i = 0; i < shape.row_count; ++i) {
+            const double share = std::max(0.0, 1.0 - std::abs(row - i));
+            const std::size_t start = first + shape.offset + i * shape.r_count;
+            for (unsigned k = 0; k < shape.r_count; ++k)
+                value += share * std::max(0.0, 1.0 - std::abs(r - k)) * double(mean_rows[start + k]);
+            total += share * double(cumulative_rows[start + shape.r_count - 1]);
+        }
+        return value / total;
+    }
+
+  private:
+    void add_density(float density, unsigned r, float step) {
+        cumulative_rows.push_back(r == 0 ? 0.0f : cumulative_rows.back() + 0.5f * (mean_rows.back() + density) * step);
+        mean_rows.push_back(density);
+    }
+
+  public:
     // Bilinear in row and distance, held beyond the ends.
     std::array<double, 16> look_up(unsigned medium, unsigned component, double r_mm, double row_deg) const {
         const TableShape& shape = shapes[medium * 3 + component];
