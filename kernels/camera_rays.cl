@@ -1,21 +1,9 @@
 // The camera's rays of a pass, one a pixel.
-#include "lib/low_discrepancy.clh"
-#include "lib/rng.clh"
+#include "lib/pixel_places.clh"
 #include "lib/tiles.clh"
 #include "shared/camera.h"
 #include "shared/pass.h"
 #include "shared/ray.h"
-
-// Where in a pixel its ray of this pass goes through: uniform in [0, 1)^2, and with even_pixels any 2^m passes that follow
-// a multiple of 2^m have one ray in each rectangle of 2^-m of the area that halving gives.
-FORCE_INLINE float2 place_in_pixel(__global const PassConstants* pass, uint pixel) {
-    if (pass->even_pixels) {
-        const uint seed = dimension_seed(pass->seed, pixel);
-        return sobol2(shuffled_index(pass->pass, seed), seed);
-    }
-    const Random4 r = random4(pass->seed, pass->pass, pixel, 0u, RNG_CAMERA);
-    return (float2)(r.a, r.b);
-}
 
 // Work-items: one per pixel, in the order of lib/tiles.clh. One ray through a point of the pixel.
 // Reads camera, pass (seed, pass, even_pixels). Writes rays[width * height].

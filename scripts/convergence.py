@@ -166,9 +166,9 @@ class Measurement:
         for case in cases + pair_cases:
             radius = self.radii[case.name]
             for name in self.names[shift:] + self.names[:shift]:
-                if case in pair_cases and name not in TWO:
-                    continue
                 sampler = self.known[name]
+                if not sampler.suits(case.transport) or (case in pair_cases and name not in TWO):
+                    continue
                 jobs.append((self.curves, case.name, name, case.curve_job(sampler, seed, radius)))
                 if with_sources and case in cases and name in TWO:
                     jobs.append((self.twice, case.name, name, case.twice_job(sampler, seed, radius)))
@@ -182,7 +182,7 @@ class Measurement:
     def numbers(self, case):
         """All samplers of a case, plain first."""
         curves, truth = self.curves_of(case), self.truths[case.name]
-        found = analysis.of_scene({name: curves[name] for name in self.names}, truth)
+        found = analysis.of_scene({name: curves[name] for name in self.names if name in curves}, truth)
         for name, results in self.twice.get(case.name, {}).items():
             found[name]["sources"] = analysis.sources(curves[name], results, truth, self.known[name].independent)
         return found

@@ -114,6 +114,7 @@ void Renderer::make_trial_photons(bool store_direct) {
     PassBuffers plain = pass_.buffers();
     plain.both_branches = false;
     plain.exits = 1;
+    plain.weighted_distances = false;  // so that the radius is the same with all samplers
     plain.store_direct = store_direct;
     tracer_.trace(on_device_, plain, photons_, maps_);
 }

@@ -30,7 +30,7 @@ typedef struct PassConstants {
     // 1: the wavelengths are drawn by importance, in strata; chain is void, the rows hold each pair's own weight, and
     // lib/reradiation.clh needs the rest of this.
     unsigned int stratified;
-    unsigned int even_pixels;  // 1: camera rays cover a pixel evenly over passes; 0: independent ones (sampling plain)
+    unsigned int even_pixels;  // 1: rays cover a pixel, and trials its disk, evenly over passes; 0: independently (plain)
     unsigned int strata[16];  // each wavelength's stratum, 0 to 15, never decreasing
     float level_shares[STOKES_STRATA_LEVELS];  // how often sets are drawn in 1, 2, 4, 8, 16 bands of equal counts
     unsigned int even_exits;  // 1: exits of a photon's first event lie at its EventWords; 0: at random

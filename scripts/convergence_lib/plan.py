@@ -54,15 +54,16 @@ class Case:
         self.truth_file = None  # once there is one
 
     def job(self, name, sampler, passes, seed, flags, photons=None, transport=None, **more):
+        transport = transport or self.transport
         return Job(
             name=f"{self.name} {name}",
             scene=self.scene,
             passes=passes,
             photons=photons or self.photons,
             size=self.pixels,
-            transport=transport or self.transport,
+            transport=transport,
             seed=seed,
-            flags=(*sampler.flags, *flags),
+            flags=(*sampler.flags(transport), *flags),
             **more,
         )
 

@@ -31,9 +31,16 @@ GatherPoint point_at(double x, double y, double z) {
     return point;
 }
 
+// Which pass it is, and whether it has even_pixels.
+struct PassKind {
+    std::uint32_t index = 2;
+    bool even = false;
+};
+
 // Weights of count pixels that all see the same point of the mesh, its normal +y.
 // The mesh's last triangles are those of another body.
-Sample weights(const Mesh& mesh, GatherPoint point, std::uint32_t count, float radius_mm, std::size_t others = 0) {
+std::vector<double> weights_by_pixel(const Mesh& mesh, GatherPoint point, std::uint32_t count, float radius_mm,
+                                     std::size_t others = 0, PassKind kind = {}) {
     std::vector<Triangle> triangles = triangles_of(mesh);
     for (std::size_t i = triangles.size() - others; i < triangles.size(); ++i) triangles[i].body = 1;
     const Bvh bvh = build_bvh(triangles, {16, BvhBounds::counts});
@@ -43,12 +50,24 @@ Sample weights(const Mesh& mesh, GatherPoint point, std::uint32_t count, float r
         given.push_back(point);
     }
     const Buffer<GatherPoint> points = on_device(given);
+    const Buffer<PassConstants> pass = pass_on_device(5);
+    PassConstants constants = pass.download().front();
+    constants.pass = kind.index;
+    constants.even_pixels = kind.even ? 1 : 0;
+    pass.upload(&constants, 1);
     Program(test_device(), "measure_disks.cl")
         .kernel("measure_disks")
-        .launch(count, count, radius_mm, pass_on_device(5), on_device(bvh.nodes), on_device(bvh.blocks), bvh.grid,
+        .launch(count, count, radius_mm, pass, on_device(bvh.nodes), on_device(bvh.blocks), bvh.grid,
                 on_device(triangles), points);
+    std::vector<double> result;
+    for (const GatherPoint& found : points.download()) result.push_back(static_cast<double>(found.weight));
+    return result;
+}
+
+Sample weights(const Mesh& mesh, const GatherPoint& point, std::uint32_t count, float radius_mm, std::size_t others = 0,
+               PassKind kind = {}) {
     Sample sample;
-    for (const GatherPoint& found : points.download()) sample.add(static_cast<double>(found.weight));
+    for (const double weight : weights_by_pixel(mesh, point, count, radius_mm, others, kind)) sample.add(weight);
     return sample;
 }
 
@@ -63,7 +82,9 @@ TEST_CASE("the whole disk on the surface weighs one", "[measure_disks][tiny]") {
     CHECK(sample.variance() == 0.0);
 }
 
-// The mean of the weight is the reciprocal of the share of the disk on the surface; seven comparisons at 4 standard errors.
+// The mean of the weight is the reciprocal of the share of the disk on the surface; 14 comparisons at 4 standard errors. The
+// variance is that of a geometric distribution, (1 - p)/p^2; with even pixels (1 - p)/p for the first place, and a quarter
+// of the geometric one's, 1 - p times, for the rest.
 TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, in the mean", "[measure_disks]") {
     const Mesh plate = make_rectangle(20.0, 20.0), post = make_prism(6, 10.0, 8.0);
     const double apothem = 10.0 * std::sqrt(0.75);
@@ -79,11 +100,33 @@ TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, i
                           Case{post, point_at(0.0, 8.0, apothem - 0.3), share_inside(0.3)},
                           Case{post, point_at(0.0, 8.0, -apothem + 0.6), share_inside(0.6)},
                           Case{post, point_at(0.0, 8.0, 0.0), 1.0}}) {
-        const Sample sample = weights(c.mesh, c.point, 40000, 1.0f);
-        CAPTURE(c.point.x, c.point.y, c.point.z, sample.mean(), 1.0 / c.share);
+        const Sample sample = weights(c.mesh, c.point, 40000, 1.0f), even = weights(c.mesh, c.point, 40000, 1.0f, 0, {2, true});
+        CAPTURE(c.point.x, c.point.y, c.point.z, sample.mean(), even.mean(), 1.0 / c.share);
         CHECK(std::abs(sample.z(1.0 / c.share)) < 4.0);
-        if (c.share < 1.0) CHECK(sample.standard_error() < 0.03);
+        CHECK(std::abs(even.z(1.0 / c.share)) < 4.0);
+        const double p = c.share, geometric = (1.0 - p) / (p * p);
+        CHECK(sample.variance() == Approx(geometric).epsilon(0.1));
+        CHECK(even.variance() == Approx((1.0 - p) / p + (1.0 - p) * geometric / 4.0).epsilon(0.1));
     }
+}
+
+// Of 16 passes the first places are even, so that about as many fail at every pixel: of independent ones the sums' variance
+// would be 16 times that of one.
+TEST_CASE("over passes disks are measured evenly", "[measure_disks]") {
+    const Mesh plate = make_rectangle(20.0, 20.0);
+    std::vector<double> sums(4000, 0.0);
+    Sample one, all;
+    for (std::uint32_t pass = 0; pass < 16; ++pass) {
+        const std::vector<double> weights = weights_by_pixel(plate, point_at(9.5, 0.0, 0.0), 4000, 1.0f, 0, {pass, true});
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            one.add(weights[i]);
+            sums[i] += weights[i];
+        }
+    }
+    for (const double sum : sums) all.add(sum);
+    const double p = share_inside(0.5), series = (1.0 - p) * (1.0 - p) / (p * p) / 4.0;
+    CHECK(all.variance() < 16.0 * (series + 0.4 * (one.variance() - series)));
+    CHECK(all.mean() == Approx(16.0 / p).epsilon(0.01));
 }
 
 TEST_CASE("a point's own radius is that of its disk", "[measure_disks]") {

@@ -212,16 +212,30 @@ class Plan(unittest.TestCase):
     def test_samplers_that_the_program_has_not_are_left_out(self):
         found, left_out = samplers.available({"--sampling", "--wavelengths"})
         self.assertEqual(list(found), ["plain", "best", "wavelengths"])
-        self.assertEqual(found["best"].flags, ("--sampling", "best", "--wavelengths", "importance"))
-        self.assertEqual(found["wavelengths"].flags, ("--sampling", "plain", "--wavelengths", "importance"))
+        self.assertEqual(found["best"].flags("paper"), ("--sampling", "best", "--wavelengths", "importance"))
+        self.assertEqual(found["wavelengths"].flags("paper"), ("--sampling", "plain", "--wavelengths", "importance"))
         self.assertEqual(set(left_out), {s.name for s in samplers.SINGLE} - {"wavelengths"})
         found, left_out = samplers.available({"--sampling", "--wavelengths", "--radii"})
         self.assertEqual(list(found), ["plain", "best", "wavelengths", "radii"])
-        self.assertEqual(found["best"].flags, ("--sampling", "best", "--wavelengths", "importance"))
+        self.assertEqual(found["best"].flags("paper"), ("--sampling", "best", "--wavelengths", "importance"))
         self.assertEqual(samplers.OTHER_KERNEL, {"radii"})
         known = samplers.known_flags(STOKES)
         self.assertLessEqual({"--sampling", "--wavelengths", "--rmse-against"}, known)
         self.assertNotIn("--nothing", known)
+
+    def test_models_get_the_flags_that_they_take(self):
+        found, _ = samplers.available({"--branches", "--distances"})
+        best = found["best"]
+        self.assertEqual(best.flags("walk"), ("--sampling", "best"))
+        self.assertEqual(best.flags("conserving"), ("--sampling", "best", "--branches", "both"))
+        self.assertEqual(best.flags("paper")[-2:], ("--distances", "importance"))
+        suited = {t: [name for name in found if found[name].suits(t)] for t in samplers.TRANSPORTS}
+        self.assertEqual(suited["walk"], ["plain", "best"])
+        self.assertEqual(suited["conserving"], ["plain", "best", "branches"])
+        self.assertEqual(suited["paper"], list(found))
+        scene = scenes.load("sphere")
+        job = plan.Case("sphere", scene, plan.TINY).job("x", best, 4, 1, (), transport="walk")
+        self.assertNotIn("--branches", job.flags)
 
     def test_the_last_radius_is_the_renderers(self):
         scene = scenes.change(scenes.load("sphere"), {"render": {"radius_mm": 5.0}})
