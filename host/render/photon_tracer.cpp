@@ -90,7 +90,8 @@ PhotonAccount PhotonTracer::trace(const DeviceScene& scene, const PassBuffers& p
 void PhotonTracer::emit(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons) {
     if (pass.cell_count > 0)
         emit_stratified_.launch(photons, pass.constants, pass.cell_count, pass.cells, pass.first_photons, scene.lights,
-                                scene.light_areas, scene.triangles, pass.photon_flux, rays_, flux_, ledgers_, alive_, event_words_);
+                                scene.light_areas, scene.triangles, pass.photon_flux, rays_, flux_, ledgers_, alive_,
+                                event_words_);
     else
         emit_.launch(photons, pass.constants, scene.light_count, scene.lights, scene.light_areas, scene.triangles,
                      pass.photon_flux, rays_, flux_, ledgers_, alive_);
@@ -221,8 +222,8 @@ void PhotonTracer::sample_exits(const DeviceScene& scene, const PassBuffers& pas
     const Buffer<std::uint32_t>& list = list_of(round);
     if (!scene.integrated) {
         sample_exits_.launch(round.count, round, pass.constants, list, points_, rays_, scene.materials, pass.rows,
-                             scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, event_words_, exits_,
-                             probes_);
+                             scene.tables.shapes, scene.tables.mean_rows, scene.tables.cumulative_rows, event_words_,
+                             exits_, probes_);
         return;
     }
     if (!draw_exits_) {

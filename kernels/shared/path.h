@@ -99,8 +99,8 @@ typedef struct ExitPoint {
     unsigned int path;
     unsigned int material;
     float way_mm;        // to the first collision, along the refracted ray
-    float scale;         // factor on what leaves: PAPER the table's density of r over the drawn one, DIRECT 1/density of the direction, SCATTERED 1/density of r,
-                         // both over the number of exits
+    float scale;         // factor on what leaves: PAPER the table's density of r over the drawn one, DIRECT 1/density
+                         // of the direction, SCATTERED 1/density of r, the last two over the number of exits
     LightSum kept;         // the deposited flux; PAPER: before the branch's weight
     LightSum event_light;  // PAPER: re-emitted as fluorescence; DIRECT: what the first collision sends on; SCATTERED:
                            // what it takes up

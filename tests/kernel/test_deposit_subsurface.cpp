@@ -65,8 +65,9 @@ Exits sample(const SubsurfaceArrivals& a, const std::vector<std::uint32_t>& list
     Program(test_device(), "deposit_subsurface.cl")
         .kernel("sample_exits")
         .launch(list.size(), round, pass_on_device(9, 0, offset_mm), on_device(list), on_device(a.points),
-                on_device(a.rays), on_device(materials), on_device(conserving_spectra()), on_device(tables.shapes), on_device(tables.mean_rows), on_device(tables.cumulative_rows),
-                on_device(std::vector<EventWords>(1)), exits, probes);
+                on_device(a.rays), on_device(materials), on_device(conserving_spectra()), on_device(tables.shapes),
+                on_device(tables.mean_rows), on_device(tables.cumulative_rows), on_device(std::vector<EventWords>(1)),
+                exits, probes);
     return {exits.download(), probes.download()};
 }
 
