@@ -81,11 +81,13 @@ FORCE_INLINE Random4 stratified(Random4 first, uint k, uint count) {
 }
 
 // The draw of a photon's first event that goes with the place where it started: a is its distance or direction, b its
-// azimuth. Each stream scrambles it for itself.
-FORCE_INLINE Random4 even_draw(EventWords words, uint seed, uint stream) {
+// azimuth. Each stream scrambles it for itself. Two exits of one event, single and multiple or direct and scattered, have
+// their distances from different coordinates (turned), so that pairs of distances are even too.
+FORCE_INLINE Random4 even_draw(EventWords words, uint seed, uint stream, bool turned) {
+    const uint a = turned ? words.second : words.first, b = turned ? words.first : words.second;
     Random4 draw = {0.0f, 0.0f, 0.0f, 0.0f};
-    draw.a = uniform_from_word(owen_scramble(words.distance, dimension_seed(~seed, 2u * stream)));
-    draw.b = uniform_from_word(owen_scramble(words.azimuth, dimension_seed(~seed, 2u * stream + 1u)));
+    draw.a = uniform_from_word(owen_scramble(a, dimension_seed(~seed, 2u * stream)));
+    draw.b = uniform_from_word(owen_scramble(b, dimension_seed(~seed, 2u * stream + 1u)));
     return draw;
 }
 
@@ -118,8 +120,9 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
     const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
     const TableShape shape = table_shapes[material->medium * 3u + round.component];
     const uint stream = RNG_EXIT + (round.sampler == STOKES_SAMPLER_SCATTERED ? 3u : 0u) + round.component;
+    const bool turned = round.sampler == STOKES_SAMPLER_SCATTERED || round.component == STOKES_MAP_MULTIPLE;
     const Random4 first_draw = round.event == 0u && pass->even_exits != 0u
-                                   ? even_draw(event_words[path], pass->seed, stream)
+                                   ? even_draw(event_words[path], pass->seed, stream, turned)
                                    : random4(pass->seed, pass->pass, path, round.event, stream);
     const Random4 branch = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
     for (uint k = 0u; k < round.exits; ++k) {

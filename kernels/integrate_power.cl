@@ -1,5 +1,6 @@
 // Stage 4 of a pass, model `paper` without power tables: every photon integrates eq. 3-5 itself (PHYSICS section 3).
-// Exits have the same distribution as those that sample_exits draws from the tables, and the same flux leaves there.
+// Exits have the same distribution as those that sample_exits draws from the tables without weights, and the same flux
+// leaves there. All of them are drawn at random.
 #include "lib/exit_points.clh"
 #include "lib/integrated_distance.clh"
 #include "lib/integrated_power.clh"

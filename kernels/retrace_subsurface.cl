@@ -37,7 +37,9 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
         return;
     }
     const float2 taken_up = light_of(arriving * spectra[material->excitation_row], pass);
-    const float2 in_medium = converted - kept;
+    // A weighted exit is kept, absorbed and created with its weight, whose mean is one; what that is off by is chance.
+    const float2 weighted = converted * exit_point.scale, in_medium = weighted - kept;
+    add_light(&ledger->roulette, converted - weighted);
     add_light(&ledger->absorbed, incident - taken_up + max(in_medium, 0.0f));
     add_light(&ledger->created, max(-in_medium, 0.0f));
     add_light(&ledger->stokes_loss, taken_up - converted);
@@ -90,8 +92,12 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
         end_path(&rays[path], ledger, STOKES_FATE_OVERFLOW);
         return;
     }
-    add_light(&ledger->absorbed, max(incident - kept, 0.0f));
-    add_light(&ledger->created, max(kept - incident, 0.0f));
+    // As above, of both exits together: with both weights what they would keep without.
+    const float2 weighted = multiple.scale * light_in(single.kept) + single.scale * light_in(multiple.kept);
+    const float2 in_medium = single.scale * multiple.scale * incident - weighted;
+    add_light(&ledger->roulette, incident - kept - in_medium);
+    add_light(&ledger->absorbed, max(in_medium, 0.0f));
+    add_light(&ledger->created, max(-in_medium, 0.0f));
     const float2 missed = missed_light(&single) + missed_light(&multiple);
     add_light(&ledger->dropped, missed);
 

@@ -247,6 +247,10 @@ def measure(options, size, folder):
     start = time.monotonic()
     known, names = chosen_samplers(options)
     cases = chosen_cases(options, size)
+    for case in cases:
+        unsuited = [name for name in names if not known[name].suits(case.transport)]
+        if unsuited:
+            print(f"note: {case.name}: transport {case.transport} has no {', '.join(unsuited)}")
     with_sources = options.sources if options.sources is not None else not options.quick
     pairs = chosen_pairs(options, size)
     pair_cases = [case for pair in pairs.values() for case in pair]

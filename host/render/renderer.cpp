@@ -99,13 +99,13 @@ void Renderer::set_up_passes() {
         }
     }
     if (!local) return;
-    make_trial_photons(pass_.buffers().store_direct);
+    make_trial_photons(false);
     gather_.set_radii(find_local_radii(found_mm));
 }
 
 // Photons have the same flux at every wavelength: a lamp of few wavelengths might be dark at all of those that were
 // drawn. What one photon stores in several places at once counts as one: it is no more light that found its own way.
-void Renderer::make_trial_photons(bool store_direct) {
+void Renderer::make_trial_photons(bool as_plain) {
     pass_.make(trial_pass, photons_);
     Flux16 even;
     std::fill(std::begin(even.v), std::end(even.v), 1.0f);
@@ -114,8 +114,10 @@ void Renderer::make_trial_photons(bool store_direct) {
     PassBuffers plain = pass_.buffers();
     plain.both_branches = false;
     plain.exits = 1;
-    plain.weighted_distances = false;  // so that the radius is the same with all samplers
-    plain.store_direct = store_direct;
+    if (as_plain) {
+        plain.weighted_distances = false;
+        plain.store_direct = true;
+    }
     tracer_.trace(on_device_, plain, photons_, maps_);
 }
 

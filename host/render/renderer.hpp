@@ -45,7 +45,7 @@ class Renderer {
   private:
     PhotonMaps make_maps();
     void set_up_passes();
-    void make_trial_photons(bool store_direct);
+    void make_trial_photons(bool as_plain);
     double find_first_radius();
     EmissionCells aimed_cells();
     std::vector<PixelRadius> find_local_radii(double radius_mm);

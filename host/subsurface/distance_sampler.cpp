@@ -1,21 +1,36 @@
 #include "host/subsurface/distance_sampler.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 namespace stokes {
 
 namespace {
 
-// Appends a row of a density over r_mm and of its integral from the first distance on.
-void add_row(const std::vector<double>& density, const std::vector<double>& r_mm, std::vector<float>& rows,
-             std::vector<float>& cumulative_rows) {
-    double integral = 0.0;
-    for (std::size_t r = 0; r < r_mm.size(); ++r) {
-        if (r > 0) integral += 0.5 * (density[r - 1] + density[r]) * (r_mm[r] - r_mm[r - 1]);
-        rows.push_back(static_cast<float>(density[r]));
-        cumulative_rows.push_back(static_cast<float>(integral));
-    }
+// Share of the weighted rows that is the mean itself: no exit weighs more than about ten times what it does without.
+constexpr double unweighted_share = 0.1;
+
+// Integrals of a density over r_mm, piecewise linear, from the first distance to each.
+std::vector<double> integrals(const std::vector<double>& density, const std::vector<double>& r_mm) {
+    std::vector<double> result(density.size(), 0.0);
+    for (std::size_t r = 1; r < density.size(); ++r)
+        result[r] = result[r - 1] + 0.5 * (density[r - 1] + density[r]) * (r_mm[r] - r_mm[r - 1]);
+    return result;
+}
+
+void append(std::vector<float>& floats, const std::vector<double>& values) {
+    for (const double value : values) floats.push_back(static_cast<float>(value));
+}
+
+// Both shares integrate to their part of one; 0 where the mean is.
+std::vector<double> weighted(const std::vector<double>& mean, const std::vector<double>& r_mm) {
+    const double total = integrals(mean, r_mm).back();
+    std::vector<double> squares(mean.size(), 0.0), result(mean.size(), 0.0);
+    if (!(total > 0.0)) return result;
+    for (std::size_t r = 0; r < mean.size(); ++r) squares[r] = mean[r] / total * (mean[r] / total);
+    const double squared = integrals(squares, r_mm).back();
+    for (std::size_t r = 0; r < mean.size(); ++r)
+        result[r] = unweighted_share * mean[r] / total + (1.0 - unweighted_share) * squares[r] / squared;
+    return result;
 }
 
 }  // namespace
@@ -25,18 +40,17 @@ DistanceSampler make_distance_sampler(const PowerTable& table, std::size_t offse
     sampler.shape = table_shape(table, offset);
     const std::size_t lambdas = table.axes.back().values.size();
     const std::vector<double>& r_mm = table.axis("r")->values;
-    std::vector<std::vector<double>> rows(sampler.shape.row_count);
-    double largest = 0.0;
-    for (std::size_t row = 0; row < rows.size(); ++row)
+    for (std::size_t row = 0; row < sampler.shape.row_count; ++row) {
+        std::vector<double> mean;
         for (std::size_t r = 0; r < r_mm.size(); ++r) {
             const double* entry = table_entry(table, sampler.shape, row, r);
-            rows[row].push_back(std::accumulate(entry, entry + lambdas, 0.0) / static_cast<double>(lambdas));
-            largest = std::max(largest, rows[row].back());
+            mean.push_back(std::accumulate(entry, entry + lambdas, 0.0) / static_cast<double>(lambdas));
         }
-    for (std::vector<double>& row : rows) {
-        add_row(row, r_mm, sampler.mean_rows, sampler.cumulative_rows);
-        for (double& mean : row) mean = largest > 0.0 ? (mean / largest) * (mean / largest) : 0.0;
-        add_row(row, r_mm, sampler.weighted_rows, sampler.weighted_cumulative_rows);
+        append(sampler.mean_rows, mean);
+        append(sampler.cumulative_rows, integrals(mean, r_mm));
+        const std::vector<double> drawn = weighted(mean, r_mm);
+        append(sampler.weighted_rows, drawn);
+        append(sampler.weighted_cumulative_rows, integrals(drawn, r_mm));
     }
     return sampler;
 }

@@ -14,9 +14,10 @@ namespace stokes {
 struct DistanceSampler {
     std::vector<float> mean_rows;        // [the table's unit]
     std::vector<float> cumulative_rows;  // [the table's unit * mm]
-    // The same for the density of what leaves there: the mean times itself, over the square of the table's largest.
-    std::vector<float> weighted_rows;             // [1]
-    std::vector<float> weighted_cumulative_rows;  // [mm]
+    // The same for the density to draw from where more light leaves: nine tenths as the square of the mean, the rest as
+    // the mean, normalised; 0 in rows where the mean is.
+    std::vector<float> weighted_rows;             // [1/mm]
+    std::vector<float> weighted_cumulative_rows;  // [1]
     TableShape shape{};
 };
 

@@ -75,10 +75,10 @@ typedef struct SurfacePoint {
 } SurfacePoint;
 STOKES_ASSERT_SIZE(SurfacePoint, 32);
 
-// Two coordinates of a photon's low-discrepancy point, for its first event, as scrambled binary digits, the first one
-// lowest: distance and azimuth of where light leaves that entered there. Written by emit_stratified.
+// Two coordinates of a photon's low-discrepancy point, as scrambled binary digits, the first one lowest: they draw the
+// distance, or direction, and the azimuth of each exit of its first event. Written by emit_stratified.
 typedef struct EventWords {
-    unsigned int distance, azimuth;
+    unsigned int first, second;
 } EventWords;
 STOKES_ASSERT_SIZE(EventWords, 8);
 

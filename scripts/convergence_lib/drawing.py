@@ -7,7 +7,13 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib import pyplot, ticker  # noqa: E402
 
-COLOURS = ("#555555", "#2a6fbb", "#d9822b", "#3a8f4d", "#a0539b", "#b5413b", "#6b6f1d")
+COLOURS = ("#555555", "#2a6fbb", "#d9822b", "#3a8f4d", "#a0539b", "#b5413b", "#6b6f1d", "#1d9a9a", "#e377c2", "#8c6d31")
+
+
+def colours_of(scenes):
+    """Sampler -> colour, the same in all scenes."""
+    names = list(dict.fromkeys(name for samplers, _ in scenes.values() for name in samplers))
+    return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
 
 
 def draw(scenes, file):
@@ -16,9 +22,10 @@ def draw(scenes, file):
     figure, grid = pyplot.subplots(
         len(scenes), 2, figsize=(11, 3.6 * len(scenes)), squeeze=False, constrained_layout=True
     )
+    colours = colours_of(scenes)
     for row, (name, (samplers, truth)) in zip(grid, scenes.items()):
         for axis, across, label in zip(row, ("passes", "processor_s"), ("passes", "processor time [s]")):
-            for colour, (sampler, numbers) in zip(COLOURS, samplers.items()):
+            for sampler, numbers in samplers.items():
                 curve = numbers["layers"]["whole"]
                 errors = curve["relative_rmse_error"]
                 slope = f"{sampler}: slope {numbers['slope']:.2f} ± {numbers['slope_error']:.2f}"
@@ -26,7 +33,7 @@ def draw(scenes, file):
                     curve[across],
                     curve["relative_rmse"],
                     errors if any(map(math.isfinite, errors)) else None,  # none: the truth is too uncertain
-                    color=colour,
+                    color=colours[sampler],
                     marker="o",
                     markersize=3,
                     capsize=2,

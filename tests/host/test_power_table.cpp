@@ -143,16 +143,19 @@ TEST_CASE("the sampler holds the mean over all wavelengths and its trapezoidal i
             CHECK(sampler.cumulative_rows[row * 4 + r] == Approx(integral).epsilon(1e-6));
         }
     }
-    const float largest = *std::max_element(sampler.mean_rows.begin(), sampler.mean_rows.end());
     REQUIRE(sampler.weighted_rows.size() == 12);
     for (std::size_t row = 0; row < 3; ++row) {
-        float integral = 0.0f;
-        for (std::size_t i = row * 4; i < row * 4 + 4; ++i) {
-            const float relative = sampler.mean_rows[i] / largest;
-            CHECK(sampler.weighted_rows[i] == Approx(relative * relative).epsilon(1e-5));
-            if (i > row * 4) integral += 0.25f * (sampler.weighted_rows[i - 1] + sampler.weighted_rows[i]);
+        const float* mean = &sampler.mean_rows[row * 4];
+        double squares = 0.0, integral = 0.0;
+        const double total = sampler.cumulative_rows[row * 4 + 3];
+        for (std::size_t r = 1; r < 4; ++r) squares += 0.25 * (mean[r - 1] * mean[r - 1] + mean[r] * mean[r]);
+        for (std::size_t r = 0; r < 4; ++r) {
+            const std::size_t i = row * 4 + r;
+            CHECK(sampler.weighted_rows[i] == Approx(0.1 * mean[r] / total + 0.9 * mean[r] * mean[r] / squares).epsilon(1e-5));
+            if (r > 0) integral += 0.25 * (sampler.weighted_rows[i - 1] + sampler.weighted_rows[i]);
             CHECK(sampler.weighted_cumulative_rows[i] == Approx(integral).epsilon(1e-5));
         }
+        CHECK(integral == Approx(1.0).epsilon(1e-5));
     }
 }
 

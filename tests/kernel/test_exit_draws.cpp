@@ -98,7 +98,7 @@ TEST_CASE("distances drawn from another density have the weight of the table's o
 }
 
 // The words of path list[i] are the digits of i, so that the draws are a van der Corput sequence, scrambled. Of n in
-// eight equal steps all but 7 in each are there for certain.
+// eight equal steps there are as many in each, but for one.
 TEST_CASE("the first event's exits follow the words of their photons", "[exit_draws]") {
     const MadeUpTables tables;
     SubsurfaceArrivals a(12000);
@@ -130,9 +130,9 @@ TEST_CASE("the first event's exits follow the words of their photons", "[exit_dr
             }
             quantiles[std::min(static_cast<std::size_t>(below * 8.0), std::size_t{7})] += 1.0;
         }
-        // Rounding can take one across a border.
-        for (const double count : turns) CHECK(std::abs(count - n / 8.0) <= 9.0);
-        for (const double count : quantiles) CHECK(std::abs(count - n / 8.0) <= 9.0);
+        // Rounding can take some across a border.
+        for (const double count : turns) CHECK(std::abs(count - n / 8.0) <= 4.0);
+        for (const double count : quantiles) CHECK(std::abs(count - n / 8.0) <= 4.0);
     }
     for (std::size_t i = 0; i < 8; ++i) CHECK(azimuths[1][i] != Approx(azimuths[2][i]).margin(1e-3));
 }

@@ -84,7 +84,7 @@ using namespace stokes;
     S(WalkSlots) F(WalkSlots, first) F(WalkSlots, limit) F(WalkSlots, pad) \
     S(SurfacePoint) F(SurfacePoint, x) F(SurfacePoint, y) F(SurfacePoint, z) F(SurfacePoint, material) \
         F(SurfacePoint, nx) F(SurfacePoint, ny) F(SurfacePoint, nz) F(SurfacePoint, body) \
-    S(EventWords) F(EventWords, distance) F(EventWords, azimuth) \
+    S(EventWords) F(EventWords, first) F(EventWords, second) \
     S(ExitPoint) F(ExitPoint, x) F(ExitPoint, y) F(ExitPoint, z) F(ExitPoint, r_mm) F(ExitPoint, nx) \
         F(ExitPoint, ny) F(ExitPoint, nz) F(ExitPoint, row) F(ExitPoint, path) F(ExitPoint, material) \
         F(ExitPoint, way_mm) F(ExitPoint, scale) F(ExitPoint, kept) F(ExitPoint, event_light) \

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "host/render/emission_trial.hpp"
 #include "host/render/pass_maker.hpp"
 #include "host/render/photon_tracer.hpp"
 #include "tests/support/catch.hpp"
@@ -51,13 +52,14 @@ void add_maps(const PhotonMaps& maps, Stored& stored) {
     }
 }
 
-Stored measured(Scene scene, Branches branches, int exits, std::uint32_t seed) {
+Stored measured(Scene scene, Branches branches, int exits, std::uint32_t seed, bool even = false) {
     scene.render.branches = branches;
     scene.render.exits = exits;
     scene.render.seed = seed;
     const Device& device = test_device();
     const DeviceScene on_device(device, scene);
     PassMaker pass(device, scene, on_device);
+    if (even) pass.set_emission(EmissionCells::even(emitting_lights(scene, on_device), photons));
     PhotonTracer tracer(device, on_device.rays.kernels, photons);
     PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                     PhotonMap(device, "surface", 16)};
@@ -106,7 +108,7 @@ void check_same(const Stored& a, const Stored& b, double largest_error) {
             check_same(a.within[m][d], b.within[m][d], largest_error);
         }
     }
-    for (const std::size_t k : {1u, 2u, 3u, 7u}) {  // absorbed, Stokes loss, escaped, stored
+    for (const std::size_t k : {1u, 2u, 3u, 6u, 7u}) {  // absorbed, Stokes loss, escaped, created, stored
         CAPTURE(k);
         check_same(a.energy[k], b.energy[k], 0.5 * largest_error);
     }
@@ -175,5 +177,18 @@ TEST_CASE("the paper's light leaves as far from its entry however that is drawn"
             CAPTURE(map);
             CHECK(variance_ratio(importance, table, map) < 0.5);
         }
+    }
+}
+
+// Photons of a narrow beam, so that where they start makes no noise within the distances: what is left is that of the exits.
+TEST_CASE("exits that go with an even start store the same light with less noise", "[branches]") {
+    for (const Transport transport : {Transport::conserving, Transport::paper}) {
+        const Scene scene = uneven(slab_scene(0.4, 45.0, transport));
+        CAPTURE(static_cast<int>(transport));
+        const Stored random = measured(scene, Branches::both, 1, 10), even = measured(scene, Branches::both, 1, 11, true);
+        check_same(random, even, 0.1);
+        CHECK(variance_ratio(even, random, STOKES_MAP_MULTIPLE) < 0.6);
+        // By `conserving` its noise is that of the way to the first collision.
+        if (transport == Transport::paper) CHECK(variance_ratio(even, random, STOKES_MAP_FLUORESCENCE) < 0.1);
     }
 }

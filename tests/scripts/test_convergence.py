@@ -24,7 +24,7 @@ except ImportError as missing:
     print(missing, file=sys.stderr)
     sys.exit(77)
 
-from convergence_lib import analysis, pictures, plan, samplers, statistics  # noqa: E402
+from convergence_lib import analysis, drawing, pictures, plan, samplers, statistics  # noqa: E402
 from figures_lib import exr, scenes  # noqa: E402
 
 FOLDER = pathlib.Path(sys.argv.pop())
@@ -233,6 +233,9 @@ class Plan(unittest.TestCase):
         self.assertEqual(suited["walk"], ["plain", "best"])
         self.assertEqual(suited["conserving"], ["plain", "best", "branches"])
         self.assertEqual(suited["paper"], list(found))
+        every = list(samplers.available({s.options[0].words[0] for s in samplers.SINGLE})[0])
+        colours = drawing.colours_of({"a": (dict.fromkeys(every[2:]), {}), "b": (dict.fromkeys(every), {})})
+        self.assertEqual(len(set(colours.values())), len(every))
         scene = scenes.load("sphere")
         job = plan.Case("sphere", scene, plan.TINY).job("x", best, 4, 1, (), transport="walk")
         self.assertNotIn("--branches", job.flags)
