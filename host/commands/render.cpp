@@ -54,10 +54,15 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--radius")) render.radius_mm = options.radius_mm;
     if (command.count("--transport"))
         render.transport = static_cast<Transport>(index_of_word(options.transport, transport_words));
-    if (options.no_tables && render.transport != Transport::paper)
-        throw InputError("--no-tables: expected transport \"paper\", got \"" +
-                         transport_words[static_cast<std::size_t>(render.transport)] + "\"");
-    if (options.no_tables) render.tables = false;
+    const auto expect_transport = [&](const std::string& flag, const std::string& expected, bool fits) {
+        if (!fits)
+            throw InputError(fmt::format("{}: expected transport {}, got \"{}\"", flag, expected,
+                                         transport_words[static_cast<std::size_t>(render.transport)]));
+    };
+    if (options.no_tables) {
+        expect_transport("--no-tables", "\"paper\"", render.transport == Transport::paper);
+        render.tables = false;
+    }
     if (command.count("--sampling")) {
         render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
         render.wavelengths.reset();
@@ -71,21 +76,16 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--wavelengths"))
         render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
     if (command.count("--branches")) {
-        if (render.transport == Transport::walk)
-            throw InputError("--branches: expected transport \"paper\" or \"conserving\", got \"walk\"");
+        expect_transport("--branches", "\"paper\" or \"conserving\"", render.transport != Transport::walk);
         render.branches = static_cast<Branches>(index_of_word(options.branches, branches_words));
     }
     if (command.count("--distances")) {
-        if (render.transport != Transport::paper)
-            throw InputError("--distances: expected transport \"paper\", got \"" +
-                             transport_words[static_cast<std::size_t>(render.transport)] + "\"");
+        expect_transport("--distances", "\"paper\"", render.transport == Transport::paper);
         if (!render.tables) throw InputError("--distances: expected power tables, got --no-tables");
         render.distances = static_cast<Distances>(index_of_word(options.distances, distances_words));
     }
     if (command.count("--exits")) {
-        if (render.transport != Transport::conserving)
-            throw InputError("--exits: expected transport \"conserving\", got \"" +
-                             transport_words[static_cast<std::size_t>(render.transport)] + "\"");
+        expect_transport("--exits", "\"conserving\"", render.transport == Transport::conserving);
         render.exits = options.exits;
     }
     if (command.count("--emission"))
@@ -306,50 +306,33 @@ void add_render_command(CLI::App& app) {
     command->add_option("--photons", options->photons, "Photons per pass")
         ->check(number_in(1, static_cast<double>(most_photons_per_pass)));
     command->add_option("--size", options->size, "Picture size in pixels")->type_name("WxH");
-    command->add_option("--transport", options->transport, "How light travels below translucent surfaces")
-        ->type_name("MODEL")
-        ->check(word_of(transport_words));
+    const auto add_choice = [&](const std::string& flag, std::string& word, const std::vector<std::string>& words,
+                                const std::string& help, const std::string& type = "HOW") {
+        command->add_option(flag, word, help)->type_name(type)->check(word_of(words));
+    };
+    add_choice("--transport", options->transport, transport_words, "How light travels below translucent surfaces",
+               "MODEL");
     command->add_flag("--no-tables", options->no_tables,
                       "Model paper: every photon integrates its power itself, in place of the tables");
-    command->add_option("--sampling", options->sampling, "Plain samplers, or those with the least noise; default: best")
-        ->type_name("KIND")
-        ->check(word_of(sampling_words));
-    command
-        ->add_option("--wavelengths", options->wavelengths,
-                     "How a pass draws its wavelengths; default: importance, for transport paper uniform")
-        ->type_name("HOW")
-        ->check(word_of(wavelengths_words));
-    command
-        ->add_option("--branches", options->branches,
-                     "What a photon stores where it enters: one branch, or both; default: both with conserving")
-        ->type_name("HOW")
-        ->check(word_of(branches_words));
-    command
-        ->add_option("--distances", options->distances,
-                     "Transport paper: how far light leaves from its entry, from the power table or where more of it "
-                     "leaves; default: importance")
-        ->type_name("HOW")
-        ->check(word_of(distances_words));
+    add_choice("--sampling", options->sampling, sampling_words,
+               "Plain samplers, or those with the least noise; default: best", "KIND");
+    add_choice("--wavelengths", options->wavelengths, wavelengths_words,
+               "How a pass draws its wavelengths; default: importance, for transport paper uniform");
+    add_choice("--branches", options->branches, branches_words,
+               "What a photon stores where it enters: one branch, or both; default: both with conserving");
+    add_choice("--distances", options->distances, distances_words,
+               "Transport paper: how far light leaves from its entry, from the power table or where more of it leaves; "
+               "default: importance");
     command->add_option("--exits", options->exits, "Transport conserving: exit points an entry; default 1")
         ->type_name("N")
         ->check(CLI::Range(1, most_exits));
-    command
-        ->add_option("--emission", options->emission,
-                     "Where photons start: at random, evenly spread, or also where the camera sees their light; "
-                     "default: aimed")
-        ->type_name("HOW")
-        ->check(word_of(emission_words));
-    command
-        ->add_option("--direct", options->direct,
-                     "Light straight from the lights on diffuse surfaces: by photons, or by shadow rays; default: rays")
-        ->type_name("HOW")
-        ->check(word_of(direct_words));
-    command
-        ->add_option("--radii", options->radii,
-                     "Radius of the density estimate: one for the picture, or larger where photons are few; default: "
-                     "one")
-        ->type_name("HOW")
-        ->check(word_of(radii_words));
+    add_choice("--emission", options->emission, emission_words,
+               "Where photons start: at random, evenly spread, or also where the camera sees their light; default: "
+               "aimed");
+    add_choice("--direct", options->direct, direct_words,
+               "Light straight from the lights on diffuse surfaces: by photons, or by shadow rays; default: rays");
+    add_choice("--radii", options->radii, radii_words,
+               "Radius of the density estimate: one for the picture, or larger where photons are few; default: one");
     command->add_option("--seed", options->seed, "Seed of the random numbers");
     command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
         ->check(number_in(1e-6, 1.0));

@@ -119,7 +119,7 @@ DeviceTables upload_power_tables(const Device& device, const Scene& scene) {
             append(weighted_cumulative, sampler.weighted_cumulative_rows);
         }
     }
-    result.entries = result.weighted_rows = static_cast<std::uint32_t>(mean_rows.size());
+    result.entries = static_cast<std::uint32_t>(mean_rows.size());
     append(mean_rows, weighted);
     append(cumulative_rows, weighted_cumulative);
     result.shapes = Buffer<TableShape>(device, "power table shapes", shapes);

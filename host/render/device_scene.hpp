@@ -34,9 +34,8 @@ struct GreenOwner {
 struct DeviceTables {
     Buffer<TableShape> shapes;             // [3 owners]
     Buffer<float> values;                  // paper: [entry][lambda]
-    Buffer<float> mean_rows;               // [entry] distance densities; paper: then DistanceSampler's weighted ones
+    Buffer<float> mean_rows;               // [entry] distance densities; paper: then as many, DistanceSampler's weighted
     Buffer<float> cumulative_rows;         // likewise
-    std::uint32_t weighted_rows = 0;       // paper: where the weighted ones start
     Buffer<Flux16> at_wavelengths;         // [entry] at the pass's wavelengths
     EvenAxis wavelengths;                  // of values [nm]
     std::uint32_t entries = 0;

@@ -179,7 +179,7 @@ void PhotonTracer::scatter_below_surfaces(const DeviceScene& scene, const PassBu
             EventRound r = round;
             r.branches = branches;
             r.component = group.component;
-            r.drawn_rows = pass.weighted_distances ? scene.tables.weighted_rows : 0;
+            r.drawn_rows = pass.weighted_distances ? scene.tables.entries : 0;
             r.sampler = group.sampler;
             r.count = branches != 0 ? lists.branches : fluoresces(r) ? lists.fluorescence : walking ? 0 : lists.elastic;
             r.first_exit = static_cast<std::uint32_t>(all_exits);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 
@@ -148,9 +149,9 @@ Json grow_triangles(Setting& setting) {
 // Runs this program for a few passes with so many threads: PoCL takes their number when it starts. Wall time of the
 // quickest of them, which other processes have disturbed least, and the median processor time.
 Timing pass_in_own_process(const Setting& setting, int threads) {
-    char name[] = "/tmp/stokes_bench_XXXXXX";
-    const int file = ::mkstemp(name);
-    if (file < 0) throw RunError("/tmp: no temporary file");
+    std::string name = (std::filesystem::temp_directory_path() / "stokes-bench-XXXXXX").string();
+    const int file = ::mkstemp(name.data());
+    if (file < 0) throw RunError(name + ": no temporary file");
     ::close(file);
     std::vector<std::string> words{setting.own_program,     "--only", "pass", "--threads",
                                    std::to_string(threads), "--json", name};
@@ -171,7 +172,7 @@ Timing pass_in_own_process(const Setting& setting, int threads) {
         const Json pass = Json::parse(std::ifstream(name))["pass"];
         timing = {pass["seconds_min"].get<double>(), pass["cpu_seconds"].get<double>()};
     }
-    ::unlink(name);
+    ::unlink(name.c_str());
     if (!(timing.wall_s > 0.0)) throw RunError("a pass in a process of its own failed");
     return timing;
 }

@@ -104,7 +104,7 @@ void check_same(const Blocks& a, const Blocks& b) {
             for (std::size_t i = 0; i < seeds; ++i) x[i] += a.blocks[c][k][i], y[i] += b.blocks[c][k][i];
         }
         CAPTURE(c);
-        check(x, y, 4.5, 0.025);
+        check(x, y, 4.5, 0.02);
     }
 }
 
