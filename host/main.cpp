@@ -16,8 +16,7 @@ int report(const char* text, int code) {
 
 std::string subcommand_names(const CLI::App& app) {
     std::string names;
-    for (const CLI::App* command : app.get_subcommands({}))
-        names += (names.empty() ? "" : ", ") + command->get_name();
+    for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
     return names;
 }
 

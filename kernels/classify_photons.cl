@@ -18,14 +18,14 @@ FORCE_INLINE float3 hit_position(Ray ray, Hit hit, __global const Triangle* tri)
     const float3 e1 = (float3)(tri->e1x, tri->e1y, tri->e1z), e2 = (float3)(tri->e2x, tri->e2y, tri->e2z);
     const float3 from_corner = max(max(fabs(v0), fabs(e1)), fabs(e2));
     const float3 from_origin = max(fabs(origin), fabs(direction * hit.t));
-    const bool along = max(max(from_origin.x, from_origin.y), from_origin.z) <
-                       max(max(from_corner.x, from_corner.y), from_corner.z);
+    const bool along =
+        max(max(from_origin.x, from_origin.y), from_origin.z) < max(max(from_corner.x, from_corner.y), from_corner.z);
     return along ? origin + direction * hit.t : v0 + e1 * hit.u + e2 * hit.v;
 }
 
-// True where light of this branch of a translucent material meets a fluorophore. Model `paper` and surface fluorescence:
-// with probability c, PHYSICS STEP 1, the paper's section 3.3. Model `conserving`: at the first collision, with the
-// probability of lib/first_collision.clh. Model `walk` decides at each collision below the surface.
+// True where light of this branch of a translucent material meets a fluorophore. Model `paper` and surface
+// fluorescence: with probability c, PHYSICS STEP 1, the paper's section 3.3. Model `conserving`: at the first
+// collision, with the probability of lib/first_collision.clh. Model `walk` decides at each collision below the surface.
 FORCE_INLINE bool meets_fluorophore(__global const MaterialRecord* material, __global const float16* spectra,
                                     uint transport, Random4 draw) {
     if (material->medium == STOKES_NONE || transport == STOKES_TRANSPORT_PAPER)
@@ -37,16 +37,15 @@ FORCE_INLINE bool meets_fluorophore(__global const MaterialRecord* material, __g
 }
 
 // True where some of the light of this flux meets a fluorophore below the surface, and some need not.
-FORCE_INLINE bool has_branches(__global const MaterialRecord* material, __global const float16* spectra,
-                               float16 flux) {
+FORCE_INLINE bool has_branches(__global const MaterialRecord* material, __global const float16* spectra, float16 flux) {
     const float c = material->fluorescent_fraction;
     if (material->medium == STOKES_NONE || material->reradiation_row == STOKES_NONE || !(c > 0.0f)) return false;
     return sum16(flux * spectra[material->excitation_row]) > 0.0f;
 }
 
 // What a path does next where it meets the front of a surface at incidence cosine cos_in. branches: as in EventRound.
-FORCE_INLINE uint choose_event(__global const MaterialRecord* material, __global const float16* spectra,
-                               uint transport, bool branches, float cos_in, float16 flux, Random4 draw) {
+FORCE_INLINE uint choose_event(__global const MaterialRecord* material, __global const float16* spectra, uint transport,
+                               bool branches, float cos_in, float16 flux, Random4 draw) {
     if (material->kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
     if (material->kind != STOKES_TRANSLUCENT) return STOKES_EVENT_NONE;
     if (material->exit_scale > 0.0f && draw.b < external_reflectance(cos_in, material->eta))
@@ -86,11 +85,11 @@ __kernel void classify_photons(EventRound round, __global const PassConstants* p
     }
     __global const Triangle* tri = &triangles[hit.triangle];
     const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
-    const float3 normal = seen_normal(*tri, direction);
+    const float3 normal = facing_normal(*tri, direction);
     const float3 position = hit_position(rays[path], hit, tri);
     const uint material = shapes[tri->shape].material;
-    points[path] = (SurfacePoint){position.x, position.y, position.z, material,
-                                  normal.x,   normal.y,   normal.z,   tri->body};
+    points[path] =
+        (SurfacePoint){position.x, position.y, position.z, material, normal.x, normal.y, normal.z, tri->body};
 
     const float cos_in = min(-dot(direction, normal), 1.0f);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
@@ -99,7 +98,8 @@ __kernel void classify_photons(EventRound round, __global const PassConstants* p
                                     : STOKES_EVENT_NONE;
     if (kind == STOKES_EVENT_SPECULAR) {
         ledger->reflections += 1u;
-        send_on(&rays[path], ledger, &round, pass->offset_mm, position, normal, reflect_at(direction, normal), total);
+        continue_path(&rays[path], ledger, &round, pass->offset_mm, position, normal, reflect_at(direction, normal),
+                      total);
         if (round.last != 0u) return;
     } else if (kind == STOKES_EVENT_NONE) {
         add_light(&ledger->absorbed, total);
@@ -110,8 +110,7 @@ __kernel void classify_photons(EventRound round, __global const PassConstants* p
 
 // Work-items: chunks of chunk_size list entries.
 // Reads: kinds [count]. Writes: chunk_counts [chunks]: entries of each kind in the chunk.
-__kernel void count_lists(uint count, uint chunk_size, __global const uchar* kinds,
-                          __global ListCounts* chunk_counts) {
+__kernel void count_lists(uint count, uint chunk_size, __global const uchar* kinds, __global ListCounts* chunk_counts) {
     const uint chunk = (uint)get_global_id(0);
     const uint first = chunk * chunk_size;
     if (first >= count) return;

@@ -42,8 +42,8 @@ __kernel void count_photons(__global const GatherPoint* points, uint count, uint
     if (squares > 0.0f) counts[level * count + i] = max(counts[level * count + i], sum * sum / squares);
 }
 
-// Work-items: one per point. Gives points[count] the radius of their pixel: pixels[count], by GatherPoint.pixel. What is
-// seen in a reflection, or of another material than at set-up, keeps that of the pass.
+// Work-items: one per point. Gives points[count] the radius of their pixel: pixels[count], by GatherPoint.pixel. What
+// is seen in a reflection, or of another material than at set-up, keeps that of the pass.
 __kernel void choose_radii(__global const PixelRadius* pixels, uint count, __global GatherPoint* points) {
     const uint i = (uint)get_global_id(0);
     if (i >= count) return;

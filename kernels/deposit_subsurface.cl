@@ -17,8 +17,8 @@
 // Optical lengths beyond this let nothing through: exp(-40) = 4e-18.
 #define OPAQUE_DEPTH 40.0f
 
-// Model `paper`: at distance r from the entry, azimuth uniform (STEP 2 and 3). r is drawn from the component's table, or,
-// from drawn_rows on, from another density, and what leaves is weighted with the table's over that.
+// Model `paper`: at distance r from the entry, azimuth uniform (STEP 2 and 3). r is drawn from the component's table,
+// or, from drawn_rows on, from another density, and what leaves is weighted with the table's over that.
 FORCE_INLINE PlanePoint paper_exit(float3 entry, float3 normal, float3 direction, float eta, TableShape shape,
                                    __global const float* mean_rows, __global const float* cumulative_rows,
                                    uint drawn_rows, Random4 draw) {
@@ -26,8 +26,7 @@ FORCE_INLINE PlanePoint paper_exit(float3 entry, float3 normal, float3 direction
     const float r_mm = sample_distance(mean_rows + drawn_rows, cumulative_rows + drawn_rows, shape, row, draw.a);
     PlanePoint p = about_entry(entry, normal, r_mm, row, draw.b);
     if (drawn_rows > 0u) {
-        const float drawn =
-            distance_density(mean_rows + drawn_rows, cumulative_rows + drawn_rows, shape, row, r_mm);
+        const float drawn = distance_density(mean_rows + drawn_rows, cumulative_rows + drawn_rows, shape, row, r_mm);
         if (drawn > 0.0f) p.scale = distance_density(mean_rows, cumulative_rows, shape, row, r_mm) / drawn;
     }
     return p;
@@ -37,10 +36,9 @@ FORCE_INLINE PlanePoint paper_exit(float3 entry, float3 normal, float3 direction
 // ray from there meets the surface whose direction is uniform among those that can leave; its density over solid angle
 // is 1/(2 pi (1 - critical)), that of the source's light 1/(4 pi). Scattered: distance drawn from the table.
 FORCE_INLINE PlanePoint conserving_exit(float3 entry, float3 normal, float3 direction,
-                                        __global const MaterialRecord* material,
-                                        __global const float16* spectra, uint sampler, TableShape shape,
-                                        __global const float* mean_rows, __global const float* cumulative_rows,
-                                        Random4 branch, Random4 draw) {
+                                        __global const MaterialRecord* material, __global const float16* spectra,
+                                        uint sampler, TableShape shape, __global const float* mean_rows,
+                                        __global const float* cumulative_rows, Random4 branch, Random4 draw) {
     __global const float16* sigma_t = &spectra[material->sigma_row];
     const float3 within = refract_into(direction, normal, material->eta);
     PlanePoint p;
@@ -81,9 +79,9 @@ FORCE_INLINE Random4 stratified(Random4 first, uint k, uint count) {
 }
 
 // The draw of a photon's first event that goes with the place where it started: a is its distance or direction, b its
-// azimuth. Each stream scrambles it for itself. Two exits of one event, single and multiple or direct and scattered, have
-// their distances from different coordinates (turned), so that pairs of distances are even too.
-FORCE_INLINE Random4 even_draw(EventWords words, uint seed, uint stream, bool turned) {
+// azimuth. Each stream scrambles it for itself. Two exits of one event, single and multiple or direct and scattered,
+// have their distances from different coordinates (turned), so that pairs of distances are even too.
+FORCE_INLINE Random4 low_discrepancy_draw(EventSample words, uint seed, uint stream, bool turned) {
     const uint a = turned ? words.second : words.first, b = turned ? words.first : words.second;
     Random4 draw = {0.0f, 0.0f, 0.0f, 0.0f};
     draw.a = uniform_from_word(owen_scramble(a, dimension_seed(~seed, 2u * stream)));
@@ -92,15 +90,16 @@ FORCE_INLINE Random4 even_draw(EventWords words, uint seed, uint stream, bool tu
 }
 
 // Work-items: round.count, one an entry of list.
-// Reads: list, points, rays (incident direction), materials, spectra (sigma_t), table_shapes [3 a medium], mean_rows and
-//   cumulative_rows of the distance samplers, event_words [paths] where pass->even_exits has them.
+// Reads: list, points, rays (incident direction), materials, spectra (sigma_t), table_shapes [3 a medium], mean_rows
+// and
+//   cumulative_rows of the distance samplers, event_samples [paths] where pass->low_discrepancy_exits has them.
 // Writes: exits and probes at round.first_exit + i round.exits and on: round.exits points of the tangent plane, as
 //   round.sampler has it. Without subsurface: the entry itself, once, from which nothing leaves scattered.
 __kernel void sample_exits(EventRound round, __global const PassConstants* pass, __global const uint* list,
                            __global const SurfacePoint* points, __global const Ray* rays,
                            __global const MaterialRecord* materials, __global const float16* spectra,
                            __global const TableShape* table_shapes, __global const float* mean_rows,
-                           __global const float* cumulative_rows, __global const EventWords* event_words,
+                           __global const float* cumulative_rows, __global const EventSample* event_samples,
                            __global ExitPoint* exits, __global Probe* probes) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
@@ -121,16 +120,16 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
     const TableShape shape = table_shapes[material->medium * 3u + round.component];
     const uint stream = RNG_EXIT + (round.sampler == STOKES_SAMPLER_SCATTERED ? 3u : 0u) + round.component;
     const bool turned = round.sampler == STOKES_SAMPLER_SCATTERED || round.component == STOKES_MAP_MULTIPLE;
-    const Random4 first_draw = round.event == 0u && pass->even_exits != 0u
-                                   ? even_draw(event_words[path], pass->seed, stream, turned)
+    const Random4 first_draw = round.event == 0u && pass->low_discrepancy_exits != 0u
+                                   ? low_discrepancy_draw(event_samples[path], pass->seed, stream, turned)
                                    : random4(pass->seed, pass->pass, path, round.event, stream);
     const Random4 branch = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
     for (uint k = 0u; k < round.exits; ++k) {
         const Random4 draw = stratified(first_draw, k, round.exits);
         PlanePoint p;
         if (round.sampler == STOKES_SAMPLER_PAPER) {
-            p = paper_exit(entry, normal, direction, material->eta, shape, mean_rows, cumulative_rows,
-                           round.drawn_rows, draw);
+            p = paper_exit(entry, normal, direction, material->eta, shape, mean_rows, cumulative_rows, round.drawn_rows,
+                           draw);
         } else {
             p = conserving_exit(entry, normal, direction, material, spectra, round.sampler, shape, mean_rows,
                                 cumulative_rows, branch, draw);
@@ -153,10 +152,10 @@ __kernel void place_exits(uint count, __global const Probe* probes, __global con
         return;
     }
     __global const Triangle* tri = &triangles[hit.triangle];
-    const float3 normal = normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z),
-                                          (float3)(tri->e2x, tri->e2y, tri->e2z)));
-    const float3 position = (float3)(probes[i].x, probes[i].y, probes[i].z) -
-                            hit.t * (float3)(probes[i].nx, probes[i].ny, probes[i].nz);
+    const float3 normal =
+        normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z), (float3)(tri->e2x, tri->e2y, tri->e2z)));
+    const float3 position =
+        (float3)(probes[i].x, probes[i].y, probes[i].z) - hit.t * (float3)(probes[i].nx, probes[i].ny, probes[i].nz);
     exits[i].x = position.x;
     exits[i].y = position.y;
     exits[i].z = position.z;
@@ -171,8 +170,9 @@ typedef struct Collision {
 } Collision;
 
 // Model `conserving`, and surface fluorescence. flux arrives; each wavelength is weighted for the way that was drawn
-// and has its own probability of the branch, over that of drawing the branch where one was drawn (lib/first_collision.clh).
-// both: no branch was drawn. The re-radiation rows include the excitation E. leader: of reemit().
+// and has its own probability of the branch, over that of drawing the branch where one was drawn
+// (lib/first_collision.clh). both: no branch was drawn. The re-radiation rows include the excitation E. leader: of
+// reemit().
 FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global const float16* spectra,
                                __global const PassConstants* pass, bool fluorescent, bool both, float way_mm,
                                float16 flux, LightHistory light, __private uint* leader) {
@@ -190,9 +190,8 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
     const float share = p > 0.0f ? 1.0f / p : 0.0f;
     if (fluorescent) {
         result.taken_up = weighted * uptake * share;
-        result.sent_on =
-            reemit(&spectra[material->reradiation_row], weighted * (material->fluorescent_fraction * share), pass,
-                   light, leader);
+        result.sent_on = reemit(&spectra[material->reradiation_row],
+                                weighted * (material->fluorescent_fraction * share), pass, light, leader);
     } else {
         result.taken_up = weighted * (1.0f - uptake) * share;
         result.sent_on = result.taken_up * spectra[material->sigma_row + 1u];
@@ -238,8 +237,8 @@ FORCE_INLINE float16 let_through(const ExitPoint* exit_point, uint exit_index, c
 //   arriving photons [W/nm]; points [paths], for the body that they entered.
 // Writes: the map's slots from round.first_slot on, one an exit: flux that leaves there (`paper`: eq. 3, 4 or 5),
 //   ExitPoint.kept and .event_light, ledgers (stored, dropped deposits, the leader of re-emitted light).
-__kernel void deposit_exits(EventRound round, __global const PassConstants* pass,
-                            __global const SurfacePoint* points, __global const MaterialRecord* materials, __global const float16* spectra,
+__kernel void deposit_exits(EventRound round, __global const PassConstants* pass, __global const SurfacePoint* points,
+                            __global const MaterialRecord* materials, __global const float16* spectra,
                             __global const TableShape* table_shapes, __global const float16* table16,
                             __global ExitPoint* exits, __global const float16* flux, __global PathLedger* ledgers,
                             __global PhotonHead* heads, __global float16* map_flux) {

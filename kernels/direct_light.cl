@@ -26,8 +26,8 @@ FORCE_INLINE float2 spread_over_passes(__global const PassConstants* pass, uint 
     return (float2)(uniform_from_bits(a), uniform_from_bits(b));
 }
 
-// One number, whose step has no common measure with those two, so that it fills the cube with them: the third power of the
-// inverse of the root of x^4 = x + 1.
+// One number, whose step has no common measure with those two, so that it fills the cube with them: the third power of
+// the inverse of the root of x^4 = x + 1.
 FORCE_INLINE float spread_alone(__global const PassConstants* pass, uint pixel, uint event) {
     const Random4 start = random4(pass->seed, 0u, pixel, event, RNG_DIRECT);
     return uniform_from_bits(((uint)(start.a * 0x1p24f) << 8) + 0x8CB92BA7u * pass->pass);
@@ -51,8 +51,8 @@ FORCE_INLINE Shadow shadow_of_beam(__global const LightRecord* light, float3 at,
     const float cosine = -dot(direction, normal);
     Shadow shadow;
     shadow.factor = inside && dot(way, direction) >= 0.0f ? fmax(cosine, 0.0f) : 0.0f;
-    shadow.ray = (Ray){from.x,       from.y,       from.z,       0.0f,
-                       -direction.x, -direction.y, -direction.z, dot(from - centre, direction)};
+    shadow.ray =
+        (Ray){from.x, from.y, from.z, 0.0f, -direction.x, -direction.y, -direction.z, dot(from - centre, direction)};
     return shadow;
 }
 
@@ -85,8 +85,8 @@ FORCE_INLINE Shadow shadow_of_surface(__global const LightRecord* light, __globa
     shadow.ray = (Ray){from.x, from.y, from.z, 0.0f, ray.x / length, ray.y / length, ray.z / length, length};
     if (cosines > 0.0f && cos_light > 0.0f) {
         const float scale = rsqrt(squared);
-        shadow.factor = light_factor(picked, area, squared, cos_light * scale, cosines * scale,
-                                     is_near(light, area, at));
+        shadow.factor =
+            light_factor(picked, area, squared, cos_light * scale, cosines * scale, is_near(light, area, at));
     }
     return shadow;
 }
@@ -119,9 +119,9 @@ FORCE_INLINE uint pick_light(__global const LightRecord* lights, uint light_coun
 //   Surface lights that are near are looked for in a direction of density cos / pi as well, one for all of them.
 // Rays start offset_mm above the surface, as photons' do; whatever they meet blocks them.
 // Reads points[count], the scene, lights, light_areas [mm^2, cumulative within a light], emission[lights]: radiance of
-// surface lights [W mm^-2 sr^-1 nm^-1], irradiance across beams [W mm^-2 nm^-1]; spectra (row i: reflectance of material
-// i, without its texture), textures, pass (seed, pass, offset_mm, to_x, to_y, to_z).
-// Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2], in the surface layer.
+// surface lights [W mm^-2 sr^-1 nm^-1], irradiance across beams [W mm^-2 nm^-1]; spectra (row i: reflectance of
+// material i, without its texture), textures, pass (seed, pass, offset_mm, to_x, to_y, to_z). Adds to
+// film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2], in the surface layer.
 __kernel void add_direct_light(__global const GatherPoint* points, uint count, __global const PassConstants* pass,
                                __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
                                __global const Triangle* triangles, __global const ShapeRecord* shapes, uint light_count,
@@ -168,8 +168,8 @@ __kernel void add_direct_light(__global const GatherPoint* points, uint count, _
             __global const LightRecord* light = &lights[l];
             __global const Triangle* tri = &triangles[hit.triangle];
             const float area = light_areas[light->first_area + light->triangle_count - 1u];
-            const float3 front = normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z),
-                                                 (float3)(tri->e2x, tri->e2y, tri->e2z)));
+            const float3 front =
+                normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z), (float3)(tri->e2x, tri->e2y, tri->e2z)));
             const float cos_light = -dot(d, front);
             if (cos_light > 0.0f && is_near(light, area, at))
                 sum += light_factor(times_picked(lights, light_count, l), area, hit.t * hit.t, cos_light,

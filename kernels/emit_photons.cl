@@ -14,13 +14,26 @@ FORCE_INLINE void start_path(uint path, float3 origin, float3 direction, float16
                              __global PathLedger* ledgers, __global uint* list) {
     const float2 total = light_of(start, pass);
     const bool dark = !(total.x > 0.0f);
-    rays[path] = (Ray){origin.x,    origin.y,    origin.z,    0.0f,
-                       direction.x, direction.y, direction.z, dark ? -1.0f : INFINITY};
+    rays[path] =
+        (Ray){origin.x, origin.y, origin.z, 0.0f, direction.x, direction.y, direction.z, dark ? -1.0f : INFINITY};
     flux[path] = start;
     const LightSum none = {0.0f, 0.0f};
-    ledgers[path] = (PathLedger){{total.x, total.y}, none, none, none, none, none, none, none,
-                                 dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE, 0u, dark ? 0u : 1u, total.x / 16.0f,
-                                 0u, 0u, 0u, STOKES_NONE};
+    ledgers[path] = (PathLedger){{total.x, total.y},
+                                 none,
+                                 none,
+                                 none,
+                                 none,
+                                 none,
+                                 none,
+                                 none,
+                                 dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE,
+                                 0u,
+                                 dark ? 0u : 1u,
+                                 total.x / 16.0f,
+                                 0u,
+                                 0u,
+                                 0u,
+                                 STOKES_NONE};
     list[path] = path;
 }
 
@@ -51,14 +64,15 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
 // Work-items: pass->photons, one a path.
 // Reads: cells [cell_count], first_photons [cell_count + 1]: the photons of cell c are first_photons[c] to
 //   first_photons[c + 1] - 1, one at least; the rest as emit_photons.
-// Writes: as emit_photons, and event_words [paths]; flux times the cell's probability over the share of the photons that
+// Writes: as emit_photons, and event_samples [paths]; flux times the cell's probability over the share of the photons
+// that
 //   start in it.
 // The photons of a cell lie on it as the points of a low-discrepancy sequence that goes on from pass to pass.
 __kernel void emit_stratified(__global const PassConstants* pass, uint cell_count, __global const EmissionCell* cells,
                               __global const uint* first_photons, __global const LightRecord* lights,
                               __global const float* light_areas, __global const Triangle* triangles,
                               __global const float16* photon_flux, __global Ray* rays, __global float16* flux,
-                              __global PathLedger* ledgers, __global uint* list, __global EventWords* event_words) {
+                              __global PathLedger* ledgers, __global uint* list, __global EventSample* event_samples) {
     const uint path = (uint)get_global_id(0);
     if (path >= pass->photons) return;
     const uint c = cell_of_photon(first_photons, cell_count, path);
@@ -66,7 +80,7 @@ __kernel void emit_stratified(__global const PassConstants* pass, uint cell_coun
     const bool directions = light->kind == STOKES_LIGHT_SURFACE;
     const SequencePoint point = point_of_photon(pass, &cells[c], c, path - first_photons[c]);
     const uint2 words = words_of_event(point, directions);
-    event_words[path] = (EventWords){words.x, words.y};
+    event_samples[path] = (EventSample){words.x, words.y};
     const float4 place = place_of_point(point, &cells[c], directions);
     const EmittedRay start = emitted_ray(light, light_areas, triangles, pass->offset_mm, place);
     const uint count = first_photons[c + 1u] - first_photons[c];

@@ -15,9 +15,9 @@ FORCE_INLINE float3 triangle_normal(__global const Triangle* tri) {
 
 // Work-items: count exits, of which those that found no surface (r_mm < 0) are looked after.
 // Reads: probes: their point of the tangent plane; the scene. Writes: exits, r_mm positive where a surface was found.
-// A point of the plane that lies beyond the edge by x comes to lie on the face behind the edge, at x from it, as a sheet
-// of paper does when it is folded down: light that would have left beyond the edge leaves through that face. The edge is
-// found by a ray that comes back from the point towards the entry, a little below the plane.
+// A point of the plane that lies beyond the edge by x comes to lie on the face behind the edge, at x from it, as a
+// sheet of paper does when it is folded down: light that would have left beyond the edge leaves through that face. The
+// edge is found by a ray that comes back from the point towards the entry, a little below the plane.
 __kernel void fold_exits(uint count, __global const PassConstants* pass, __global const BvhNode* nodes,
                          __global const BvhBlock* blocks, BvhGrid grid, __global const Triangle* triangles,
                          __global const Probe* probes, __global ExitPoint* exits) {

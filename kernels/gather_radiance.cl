@@ -23,18 +23,18 @@ FORCE_INLINE uint maps_of(MaterialRecord material) {
 
 // Work-items: one per camera ray, in the order of lib/tiles.clh. Finds the point each ray sees, and adds the
 // light it emits to the film's surface layer.
-// A material with Fresnel reflection is seen with the probability 1 - R of trace_seen: the light from below it
+// A material with Fresnel reflection is seen with the probability 1 - R of trace_reflections: the light from below it
 // leaves as (1 - R) exit_scale, PHYSICS section 4, so that its weight is exit_scale; light that the surface itself
 // emits is the same in all directions, and is divided by 1 - R.
 // Reads rays, hits [width * height], triangles, shapes, materials, textures of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
 // Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
-__kernel void collect_points(CameraRecord camera, __global const PassConstants* pass,
-                             __global const Ray* rays, __global const Hit* hits,
-                             __global const Triangle* triangles, __global const ShapeRecord* shapes,
-                             __global const MaterialRecord* materials, __global const float16* emitted,
-                             __global const TextureRecord* texture_records, __global const float* texels,
-                             __global const TriangleUv* uv, __global GatherPoint* points, __global float4* film) {
+__kernel void collect_points(CameraRecord camera, __global const PassConstants* pass, __global const Ray* rays,
+                             __global const Hit* hits, __global const Triangle* triangles,
+                             __global const ShapeRecord* shapes, __global const MaterialRecord* materials,
+                             __global const float16* emitted, __global const TextureRecord* texture_records,
+                             __global const float* texels, __global const TriangleUv* uv, __global GatherPoint* points,
+                             __global float4* film) {
     const uint i = (uint)get_global_id(0);
     const uint pixels = camera.width * camera.height;
     if (i >= pixels) return;
@@ -45,12 +45,12 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
     point.maps = 0u;
     point.weight = 1.0f;
     point.radius_factor = 1.0f;
-    point.reflected = (uint)(rays[i].ox != camera.position_x || rays[i].oy != camera.position_y ||
-                             rays[i].oz != camera.position_z);
+    point.reflected =
+        (uint)(rays[i].ox != camera.position_x || rays[i].oy != camera.position_y || rays[i].oz != camera.position_z);
     if (hit.triangle != STOKES_NONE) {
         const Triangle t = triangles[hit.triangle];
         const ShapeRecord shape = shapes[t.shape];
-        const float3 normal = seen_normal(t, (float3)(rays[i].dx, rays[i].dy, rays[i].dz));
+        const float3 normal = facing_normal(t, (float3)(rays[i].dx, rays[i].dy, rays[i].dz));
         point.x = t.v0x + hit.u * t.e1x + hit.v * t.e2x;
         point.y = t.v0y + hit.u * t.e1y + hit.v * t.e2y;
         point.z = t.v0z + hit.u * t.e1z + hit.v * t.e2z;

@@ -14,8 +14,7 @@ __kernel void find_keys(__global const PhotonHead* heads, uint slots, HashGrid g
 
 // Work-items: STOKES_HASH_CHUNKS. Chunk c counts its photons per bucket.
 // Reads keys[slots]. Writes histograms[STOKES_HASH_CHUNKS][STOKES_HASH_BUCKETS].
-__kernel void count_buckets(__global const uint* keys, uint slots, HashGrid grid,
-                            __global uint* histograms) {
+__kernel void count_buckets(__global const uint* keys, uint slots, HashGrid grid, __global uint* histograms) {
     const uint chunk = (uint)get_global_id(0);
     if (chunk >= STOKES_HASH_CHUNKS) return;
     __global uint* counts = histograms + chunk * STOKES_HASH_BUCKETS;
@@ -55,9 +54,8 @@ __kernel void scan_buckets(__global uint* bucket_starts) {
 
 // Work-items: STOKES_HASH_CHUNKS. Chunk c writes its photons behind those of earlier chunks, bucket by
 // bucket. Reads keys[slots], bucket_starts. Uses up histograms. Writes entries[photons] = (key, slot).
-__kernel void scatter_slots(__global const uint* keys, uint slots, HashGrid grid,
-                            __global const uint* bucket_starts, __global uint* histograms,
-                            __global uint2* entries) {
+__kernel void scatter_slots(__global const uint* keys, uint slots, HashGrid grid, __global const uint* bucket_starts,
+                            __global uint* histograms, __global uint2* entries) {
     const uint chunk = (uint)get_global_id(0);
     if (chunk >= STOKES_HASH_CHUNKS) return;
     __global uint* next = histograms + chunk * STOKES_HASH_BUCKETS;
@@ -102,8 +100,7 @@ __kernel void sort_buckets(__global const uint2* entries, __global const uint* b
 // [W/nm].
 __kernel void permute_photons(__global const PhotonHead* heads, __global const float16* flux,
                               __global const uint* order, __global const uint* cell_starts, HashGrid grid,
-                              __global float* positions, __global uint* normals,
-                              __global float16* sorted_flux) {
+                              __global float* positions, __global uint* normals, __global float16* sorted_flux) {
     const uint photons = cell_starts[grid.keys];
     const uint first = (uint)get_global_id(0) * 16u;
     if (first >= photons) return;

@@ -34,7 +34,7 @@ FORCE_INLINE bool on_surface(BvhScene scene, __global const Triangle* triangles,
         const Hit standing = bvh_closest(scene, ray, foot);
         if (standing.triangle != STOKES_NONE && fabs(standing.t - hit.t) < 0.01f * height) return false;
     }
-    return dot(seen_normal(triangles[hit.triangle], -normal), normal) > STOKES_GATHER_MIN_COSINE;
+    return dot(facing_normal(triangles[hit.triangle], -normal), normal) > STOKES_GATHER_MIN_COSINE;
 }
 
 typedef struct Disk {
@@ -50,13 +50,14 @@ FORCE_INLINE bool is_on_surface(BvhScene scene, __global const Triangle* triangl
                       STOKES_GATHER_MAX_HEIGHT * disk.radius);
 }
 
-// Work-items: count, one a point. Reads: points, the scene, pass (seed, pass, even_pixels). radius_mm: of the pass.
-// Multiplies GatherPoint.weight by an estimate of 1/p, p the share of the disk that is on the surface: so the density
-// estimate divides by the area that can hold photons, without bias. How many random places of the disk it takes until one
-// is on the surface has the mean 1/p (a geometric distribution; Booth 2007, "Unbiased Monte Carlo estimation of the
-// reciprocal of an integral"). With even_pixels one place is tried first, even over the passes together with that of the
-// ray in its pixel; where it is not on the surface the mean of EVEN_SERIES such series is added to 1, for 1/p = 1 +
-// (1 - p)/p. Without, there is one series, which is the same. At most STOKES_GATHER_MOST_TRIALS each.
+// Work-items: count, one a point. Reads: points, the scene, pass (seed, pass, low_discrepancy_pixels). radius_mm: of
+// the pass. Multiplies GatherPoint.weight by an estimate of 1/p, p the share of the disk that is on the surface: so the
+// density estimate divides by the area that can hold photons, without bias. How many random places of the disk it takes
+// until one is on the surface has the mean 1/p (a geometric distribution; Booth 2007, "Unbiased Monte Carlo estimation
+// of the reciprocal of an integral"). With low_discrepancy_pixels one place is tried first, even over the passes
+// together with that of the ray in its pixel; where it is not on the surface the mean of EVEN_SERIES such series is
+// added to 1, for 1/p = 1 + (1 - p)/p. Without, there is one series, which is the same. At most
+// STOKES_GATHER_MOST_TRIALS each.
 __kernel void measure_disks(uint count, float radius_mm, __global const PassConstants* pass,
                             __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
                             __global const Triangle* triangles, __global GatherPoint* points) {
@@ -71,7 +72,7 @@ __kernel void measure_disks(uint count, float radius_mm, __global const PassCons
     disk.body = point.body;
     tangent_frame(disk.normal, &disk.s, &disk.t);
     if (is_on_surface(scene, triangles, disk, place_on_disk(pass, point.pixel))) return;
-    const uint series = pass->even_pixels != 0u ? EVEN_SERIES : 1u;
+    const uint series = pass->low_discrepancy_pixels != 0u ? EVEN_SERIES : 1u;
     uint trials = 0u;
     for (uint k = 0u; k < series; ++k) {
         bool found = false;

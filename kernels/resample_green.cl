@@ -24,8 +24,7 @@ __kernel void blend_green(GreenShape shape, __global const float* restrict log_h
     if (entry >= shape.z_count * shape.rho_count) return;
     __global const float* values = log_h + (size_t)entry * STOKES_GREEN_ALBEDOS;
     float result[STOKES_WAVELENGTHS];
-    for (int j = 0; j < STOKES_WAVELENGTHS; ++j)
-        result[j] = mix(values[lower[j]], values[lower[j] + 1u], fraction[j]);
+    for (int j = 0; j < STOKES_WAVELENGTHS; ++j) result[j] = mix(values[lower[j]], values[lower[j] + 1u], fraction[j]);
     blended[entry] = vload16(0, result);
 }
 
@@ -44,8 +43,7 @@ __kernel void resample_green(GreenShape shape, TableShape target, __global const
     const float16 sigma = vload16(0, sigma_t);
     const float16 rho = sigma * r_mm;
     const float16 z_at = green_position(sigma * z_mm, shape.z_first, shape.z_step, shape.z_count);
-    const float16 r_at =
-        green_position(max(rho, shape.rho_first), shape.rho_first, shape.rho_step, shape.rho_count);
+    const float16 r_at = green_position(max(rho, shape.rho_first), shape.rho_first, shape.rho_step, shape.rho_count);
     const float16 z_low = min(floor(z_at), (float)(shape.z_count - 2u));
     const float16 r_low = min(floor(r_at), (float)(shape.rho_count - 2u));
     float corner[4][STOKES_WAVELENGTHS];

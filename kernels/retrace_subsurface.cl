@@ -26,7 +26,7 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     const ExitPoint exit_point = exits[round.first_exit + i];
     const uint path = exit_point.path;
     __global const MaterialRecord* material = &materials[exit_point.material];
-    if (!goes_along(&round, pass, path, material)) return;
+    if (!takes_branch(&round, pass, path, material)) return;
     __global PathLedger* ledger = &ledgers[path];
     const float16 arriving = flux[path];
     const float2 incident = light_of(arriving, pass);
@@ -64,8 +64,8 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     ledger->conversions += 1u;
     ledger->history = with_leader(ledger->history, ledger->leader);
     flux[path] = carried;
-    go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(exit_point.x, exit_point.y, exit_point.z),
-          (float3)(exit_point.nx, exit_point.ny, exit_point.nz), going_on, draw.b, draw.c);
+    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(exit_point.x, exit_point.y, exit_point.z),
+                     (float3)(exit_point.nx, exit_point.ny, exit_point.nz), going_on, draw.b, draw.c);
 }
 
 // Model `paper`. Work-items: round.count elastic events; their single-scattering exits start at round.first_exit, the
@@ -82,7 +82,7 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
     const ExitPoint single = exits[round.first_exit + i];
     const ExitPoint multiple = exits[round.second_exit + i];
     const uint path = single.path;
-    if (!goes_along(&round, pass, path, &materials[single.material])) return;
+    if (!takes_branch(&round, pass, path, &materials[single.material])) return;
     __global PathLedger* ledger = &ledgers[path];
     const float16 arriving = flux[path];
     const float2 incident = light_of(arriving, pass);
@@ -114,8 +114,8 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - missed - going_on);
     flux[path] = carried;
-    go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
-          (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);
+    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
+                     (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);
 }
 
 // What the events of a list did with their light.
@@ -215,6 +215,6 @@ __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const 
         ledger->history = with_leader(ledger->history, ledger->leader);
     }
     flux[path] = carried;
-    go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
-          (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);
+    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
+                     (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);
 }

@@ -47,6 +47,6 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, leaving - going_on);
     flux[path] = carried;
-    go_on(&rays[path], ledger, &round, pass->offset_mm, (float3)(point.x, point.y, point.z), normal, going_on,
-          draw.b, draw.c);
+    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(point.x, point.y, point.z), normal,
+                     going_on, draw.b, draw.c);
 }

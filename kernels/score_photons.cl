@@ -1,6 +1,6 @@
 // How much each photon of a trial pass adds to the picture, for the aiming of emission.
-#include "lib/inline.clh"
 #include "lib/film.clh"
+#include "lib/inline.clh"
 #include "lib/texture.clh"
 #include "lib/tiles.clh"
 #include "shared/camera.h"
@@ -11,7 +11,7 @@
 
 // A photon is taken as seen where the point that the camera sees in its pixel is nearer than this many of the pixel's
 // widths on the surface, and of its body.
-#define SEEN_WIDTHS 3.0f
+#define VISIBLE_WIDTHS 3.0f
 
 // Work-items: count, the events of a round whose deposits stand in slots first_slot + i * exits + k, k < exits.
 // Reads: list [count] of paths. Writes: path_of_slot, below slot_limit.
@@ -55,7 +55,7 @@ __kernel void score_photons(uint slots, uint map, CameraRecord camera, __global 
     const float3 away = position - (float3)(point.x, point.y, point.z);
     const float facing = fabs(dot(to, (float3)(point.nx, point.ny, point.nz))) / depth;
     const float area = length(right) * length(down) * depth * depth / max(facing, 1e-3f);
-    if (dot(away, away) > SEEN_WIDTHS * SEEN_WIDTHS * area) return;
+    if (dot(away, away) > VISIBLE_WIDTHS * VISIBLE_WIDTHS * area) return;
     float16 light = flux[i] * (point.weight * M_1_PI_F);
     if (map == STOKES_MAP_SURFACE)
         light *= textured_reflectance(texture_records, spectra, point.material, point.luminance);

@@ -14,8 +14,7 @@ FORCE_INLINE void add_exactly(float2* sum, float2* lost, float2 value) {
 }
 
 // Work-items: chunks of chunk_size paths. Reads: ledgers [count]. Writes: sums [chunks].
-__kernel void sum_ledgers(uint count, uint chunk_size, __global const PathLedger* ledgers,
-                          __global LedgerSums* sums) {
+__kernel void sum_ledgers(uint count, uint chunk_size, __global const PathLedger* ledgers, __global LedgerSums* sums) {
     const uint chunk = (uint)get_global_id(0);
     const uint first = chunk * chunk_size;
     if (first >= count) return;

@@ -19,8 +19,8 @@ __kernel void trace_closest(__global const uint* list, uint n, __global const Bv
 }
 
 // Work-items: n. Reads and writes as trace_closest, for rays [n] and hits [n] in place of a list.
-__kernel void trace_closest_all(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks,
-                                BvhGrid grid, __global const Ray* rays, __global Hit* hits) {
+__kernel void trace_closest_all(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
+                                __global const Ray* rays, __global Hit* hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
     const BvhScene scene = {nodes, blocks, grid};
@@ -57,14 +57,18 @@ __kernel void trace_packets(uint n, __global const BvhNode* nodes, __global cons
         if (bvh_closest16(scene, &packet, &found)) {
             __global float* out = (__global float*)(hits + first);
             const float16 t = found.t, u = found.u, v = found.v, i = as_float16(found.triangle);
-            vstore16((float16)(t.s0, u.s0, v.s0, i.s0, t.s1, u.s1, v.s1, i.s1, t.s2, u.s2, v.s2, i.s2, t.s3, u.s3,
-                               v.s3, i.s3), 0, out);
-            vstore16((float16)(t.s4, u.s4, v.s4, i.s4, t.s5, u.s5, v.s5, i.s5, t.s6, u.s6, v.s6, i.s6, t.s7, u.s7,
-                               v.s7, i.s7), 1, out);
-            vstore16((float16)(t.s8, u.s8, v.s8, i.s8, t.s9, u.s9, v.s9, i.s9, t.sa, u.sa, v.sa, i.sa, t.sb, u.sb,
-                               v.sb, i.sb), 2, out);
-            vstore16((float16)(t.sc, u.sc, v.sc, i.sc, t.sd, u.sd, v.sd, i.sd, t.se, u.se, v.se, i.se, t.sf, u.sf,
-                               v.sf, i.sf), 3, out);
+            vstore16((float16)(t.s0, u.s0, v.s0, i.s0, t.s1, u.s1, v.s1, i.s1, t.s2, u.s2, v.s2, i.s2, t.s3, u.s3, v.s3,
+                               i.s3),
+                     0, out);
+            vstore16((float16)(t.s4, u.s4, v.s4, i.s4, t.s5, u.s5, v.s5, i.s5, t.s6, u.s6, v.s6, i.s6, t.s7, u.s7, v.s7,
+                               i.s7),
+                     1, out);
+            vstore16((float16)(t.s8, u.s8, v.s8, i.s8, t.s9, u.s9, v.s9, i.s9, t.sa, u.sa, v.sa, i.sa, t.sb, u.sb, v.sb,
+                               i.sb),
+                     2, out);
+            vstore16((float16)(t.sc, u.sc, v.sc, i.sc, t.sd, u.sd, v.sd, i.sd, t.se, u.se, v.se, i.se, t.sf, u.sf, v.sf,
+                               i.sf),
+                     3, out);
             return;
         }
     }
@@ -83,10 +87,10 @@ __kernel void trace_any(uint n, __global const BvhNode* nodes, __global const Bv
     occluded[i] = bvh_any(scene, rays[i]) ? 1u : 0u;
 }
 
-// Work-items: n. Reads: probes [n], triangles of the scene, for their body. Writes: hits [n], as probe_surface has them.
-__kernel void trace_probe(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks,
-                          BvhGrid grid, __global const Triangle* triangles, __global const Probe* probes,
-                          __global Hit* hits) {
+// Work-items: n. Reads: probes [n], triangles of the scene, for their body. Writes: hits [n], as probe_surface has
+// them.
+__kernel void trace_probe(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
+                          __global const Triangle* triangles, __global const Probe* probes, __global Hit* hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
     const BvhScene scene = {nodes, blocks, grid};

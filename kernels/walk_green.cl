@@ -16,13 +16,14 @@
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/rng.clh"
-#include "shared/limits.h"
 #include "shared/green.h"
+#include "shared/limits.h"
 
 // Smaller escapes are not worth the score: exp(-16) = 1e-7.
 #define FAINT_DEPTH 16.0f
 
-FORCE_INLINE void score(__global float16* histogram, __private const GreenWalk* walk, float2 at, float16 low, float16 high) {
+FORCE_INLINE void score(__global float16* histogram, __private const GreenWalk* walk, float2 at, float16 low,
+                        float16 high) {
     const float octaves = 0.5f * log2(dot(at, at) + FLT_MIN) - log2(walk->rho_first);
     const float bin = floor(octaves * walk->bins_per_octave + 1.5f);
     if (!(bin < (float)walk->bins)) return;
@@ -33,7 +34,7 @@ FORCE_INLINE void score(__global float16* histogram, __private const GreenWalk* 
 
 // What a walk in the deep still has to give, and where.
 FORCE_INLINE void score_deep(__global float16* histogram, __private const GreenWalk* walk, __constant float16* albedos,
-                       float2 at, float z, float16 low, float16 high, Random4 draw) {
+                             float2 at, float z, float16 low, float16 high, Random4 draw) {
     const float h = z + walk->deep_offset - walk->deep_spread * log(1.0f - draw.a);
     const float cosine = 1.0f - draw.b;
     const float s = h / cosine;
@@ -67,8 +68,7 @@ __kernel void walk_green(GreenWalk walk, __constant float16* albedos, __global f
             const float2 across = (float2)(c, sine);
             if (event > 0u && z < FAINT_DEPTH) {
                 const float mu = max(critical + (1.0f - critical) * draw.a, 1e-6f);
-                const float leaving =
-                    0.5f * (1.0f - critical) * (1.0f - internal_reflectance(mu, eta)) * exp(-z / mu);
+                const float leaving = 0.5f * (1.0f - critical) * (1.0f - internal_reflectance(mu, eta)) * exp(-z / mu);
                 const float2 exit_at = at + across * (z / mu * sqrt(max(1.0f - mu * mu, 0.0f)));
                 score(histogram, &walk, exit_at, leaving * low, leaving * high);
             }

@@ -24,7 +24,8 @@ FORCE_INLINE void fill_slot(__global PhotonHead* heads, __global float16* map_fl
 // A flat body lets light out in the tangent plane of its entry, where the sheet is; else it is a missed exit. The path
 // goes on with what was stored, roulette below ROULETTE_SHARE of what it was emitted with; in a direction of the same
 // law as `conserving` has, so that the two differ by what happens below the surface alone.
-// Ledger: absorbed and stokes_loss are what collisions take, roulette is what the weights and the roulette add and take.
+// Ledger: absorbed and stokes_loss are what collisions take, roulette is what the weights and the roulette add and
+// take.
 __kernel void walk_photons(EventRound round, WalkSlots slots, __global const PassConstants* pass,
                            __global const uint* list, __global const SurfacePoint* points, __global const uint* bodies,
                            __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
@@ -41,15 +42,26 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
     __global const MaterialRecord* material = &materials[point.material];
     __global PathLedger* ledger = &ledgers[path];
     const float2 incident = light_of(flux[path], pass);
-    Body body = {spectra[material->sigma_row], spectra[material->sigma_row + 1u], uptake_of(material, spectra),
-                 least16(spectra[material->sigma_row]), bodies[point.body] == STOKES_BODY_FLAT, point.body,
-                 (float3)(point.x, point.y, point.z), (float3)(point.nx, point.ny, point.nz), (float3)(0.0f),
-                 (float3)(0.0f), material, spectra, {nodes, blocks, grid}, triangles, pass};
+    Body body = {spectra[material->sigma_row],
+                 spectra[material->sigma_row + 1u],
+                 uptake_of(material, spectra),
+                 least16(spectra[material->sigma_row]),
+                 bodies[point.body] == STOKES_BODY_FLAT,
+                 point.body,
+                 (float3)(point.x, point.y, point.z),
+                 (float3)(point.nx, point.ny, point.nz),
+                 (float3)(0.0f),
+                 (float3)(0.0f),
+                 material,
+                 spectra,
+                 {nodes, blocks, grid},
+                 triangles,
+                 pass};
     tangent_frame(body.normal, &body.tangent_s, &body.tangent_t);
 
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_RETRACE);
-    Walker walker = enter(&body, (float3)(rays[path].dx, rays[path].dy, rays[path].dz), flux[path],
-                          ledger->history, draw.d);
+    Walker walker =
+        enter(&body, (float3)(rays[path].dx, rays[path].dy, rays[path].dz), flux[path], ledger->history, draw.d);
     uint fate = incident.x > 0.0f ? walk(&walker, &body, path, round.event * WALK_STEPS, ledger->conversions,
                                          ROULETTE_SHARE * incident.x)
                                   : STOKES_FATE_ABSORBED;
@@ -74,8 +86,8 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
                              out ? pack_normal(normal, point.body) : STOKES_EMPTY_SLOT};
     fill_slot(fluorescence_heads, fluorescence_flux, slots.first[0] + i, slots.limit[0],
               out && component == STOKES_MAP_FLUORESCENCE, head, leaving);
-    fill_slot(single_heads, single_flux, slots.first[1] + i, slots.limit[1], out && component == STOKES_MAP_SINGLE, head,
-              leaving);
+    fill_slot(single_heads, single_flux, slots.first[1] + i, slots.limit[1], out && component == STOKES_MAP_SINGLE,
+              head, leaving);
     fill_slot(multiple_heads, multiple_flux, slots.first[2] + i, slots.limit[2],
               out && component == STOKES_MAP_MULTIPLE, head, leaving);
 
@@ -107,5 +119,5 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
     ledger->conversions += walker.conversions;
     ledger->history = walker.history;
     flux[path] = carried;
-    go_on(&rays[path], ledger, &round, pass->offset_mm, position, normal, going_on, draw.b, draw.c);
+    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, position, normal, going_on, draw.b, draw.c);
 }

@@ -29,8 +29,8 @@ void check_same_layers(const CompareOptions& options, const ExrImage& picture, c
                            const std::string& other) {
         const auto layers = missing_layers(layers_in_order(has.layers), has_not.layers);
         if (!layers.empty())
-            text += fmt::format("{}{}: no layer {}, which {} has", text.empty() ? "" : "; ", file,
-                                shown_layers(layers), other);
+            text += fmt::format("{}{}: no layer {}, which {} has", text.empty() ? "" : "; ", file, shown_layers(layers),
+                                other);
     };
     check(picture, reference, options.reference_file, options.picture_file);
     check(reference, picture, options.picture_file, options.reference_file);

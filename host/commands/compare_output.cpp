@@ -14,13 +14,9 @@ namespace {
 
 constexpr const char* channels[] = {"X", "Y", "Z"};
 
-std::string number(double value) {
-    return std::isfinite(value) ? fmt::format("{:.8g}", value) : "null";
-}
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.8g}", value) : "null"; }
 
-std::string shown(double value) {
-    return std::isnan(value) ? "-" : fmt::format("{:.5g}", value);
-}
+std::string shown(double value) { return std::isnan(value) ? "-" : fmt::format("{:.5g}", value); }
 
 std::string triple(const std::array<double, 3>& values) {
     return fmt::format("[{}, {}, {}]", number(values[0]), number(values[1]), number(values[2]));
@@ -81,14 +77,14 @@ std::string Comparison::complaint() const {
 }
 
 std::string comparison_table(const Comparison& comparison) {
-    const int room = std::accumulate(comparison.layers.begin(), comparison.layers.end(), 5,
-                                     [](int widest, const auto& layer) {
-                                         return std::max(widest, static_cast<int>(layer.first.size()));
-                                     });
-    std::string text = fmt::format("{} against {}: {} x {} pixels, X, Y, Z in cd/m^2\n{:<{}}  {:>11}  {:>11}  {:>9}  "
-                                   "{:>11}  {:>11}\n",
-                                   comparison.picture, comparison.reference, comparison.width, comparison.height,
-                                   "layer", room, "RMSE", "relative", "PSNR [dB]", "mean error", "max error");
+    const int room = std::accumulate(
+        comparison.layers.begin(), comparison.layers.end(), 5,
+        [](int widest, const auto& layer) { return std::max(widest, static_cast<int>(layer.first.size())); });
+    std::string text = fmt::format(
+        "{} against {}: {} x {} pixels, X, Y, Z in cd/m^2\n{:<{}}  {:>11}  {:>11}  {:>9}  "
+        "{:>11}  {:>11}\n",
+        comparison.picture, comparison.reference, comparison.width, comparison.height, "layer", room, "RMSE",
+        "relative", "PSNR [dB]", "mean error", "max error");
     for (const auto& [name, e] : comparison.layers) {
         text += fmt::format("{:<{}}  {:>11}  {:>11}  {:>9}  {:>11}  {:>11}", name, room, shown(e.rmse),
                             shown(e.relative_rmse), shown(e.psnr_db), shown(e.mean_error), shown(e.max_error));
@@ -99,10 +95,10 @@ std::string comparison_table(const Comparison& comparison) {
 }
 
 std::string scale_text(const ErrorMap& map, const std::string& layer) {
-    std::string text =
-        fmt::format("error of {}, root mean square of X, Y, Z, linear from black, 0, by violet, red and orange to "
-                    "white, {:.6g} cd/m^2",
-                    layer, map.largest_shown);
+    std::string text = fmt::format(
+        "error of {}, root mean square of X, Y, Z, linear from black, 0, by violet, red and orange to "
+        "white, {:.6g} cd/m^2",
+        layer, map.largest_shown);
     if (map.above > 0) text += fmt::format(" and above ({} pixels)", map.above);
     if (map.not_finite > 0) text += fmt::format("; green: not finite ({} pixels)", map.not_finite);
     return text;

@@ -11,7 +11,8 @@ void add_device_flags(CLI::App& command, DeviceFlags& flags) {
     words.insert(words.begin(), "auto");
     command
         .add_option("--ray-kernel", flags.ray_kernel,
-                    "How rays are traced: avx512, avx2, portable, scalar; default: auto, by the device. The picture is the same")
+                    "How rays are traced: avx512, avx2, portable, scalar; default: auto, by the device. The picture is "
+                    "the same")
         ->type_name("WORD")
         ->check(word_of(words));
 }

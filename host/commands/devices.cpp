@@ -9,7 +9,10 @@ void add_devices_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("devices", "List the OpenCL devices");
     command->callback([] {
         for (const DeviceDescription& d : list_devices())
-            fmt::print("{}  {}  {}  [{}, {} compute units, {:.1f} GiB, {}, rays {}]{}\n", d.selector, d.cpu ? "CPU" : d.gpu ? "GPU" : "---",
+            fmt::print("{}  {}  {}  [{}, {} compute units, {:.1f} GiB, {}, rays {}]{}\n", d.selector,
+                       d.cpu   ? "CPU"
+                       : d.gpu ? "GPU"
+                               : "---",
                        d.name, d.platform, d.compute_units, static_cast<double>(d.memory_bytes) / (1 << 30), d.version,
                        ray_shape_words[static_cast<std::size_t>(choose_ray_shape(d))],
                        d.available ? "" : "  not available");

@@ -40,8 +40,7 @@ ErrorCurve::ErrorCurve(const std::string& reference_file, const std::string& csv
     check_finite(reference_file, reference.layers, layers_);
     reference_ = std::move(reference.layers);
     text_ = "passes,seconds";
-    for (const std::string& layer : layers_)
-        text_ += fmt::format(",rmse_{0},relative_rmse_{0}", shown_layer(layer));
+    for (const std::string& layer : layers_) text_ += fmt::format(",rmse_{0},relative_rmse_{0}", shown_layer(layer));
     text_ += "\n";
 }
 
@@ -65,8 +64,6 @@ void ErrorCurve::add(std::uint32_t passes, double seconds, const FilmImage& film
     }
 }
 
-void ErrorCurve::write() const {
-    write_file_atomically(csv_file_, text_);
-}
+void ErrorCurve::write() const { write_file_atomically(csv_file_, text_); }
 
 }  // namespace stokes

@@ -47,8 +47,8 @@ Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside,
     }
     for (const double value : spectrum.value)
         if (!(value >= 0.0 && value <= maximum))
-            throw InputError(fmt::format("{}: expected {} in [0, {:g}], got {}", flag,
-                                         number ? "a number" : "values", maximum, value));
+            throw InputError(fmt::format("{}: expected {} in [0, {:g}], got {}", flag, number ? "a number" : "values",
+                                         maximum, value));
     return spectrum;
 }
 
@@ -63,8 +63,7 @@ Medium medium_of(const MaterialFlags& flags) {
         if (!(sigma_t >= smallest_sigma_t_per_mm && sigma_t <= largest_sigma_t_per_mm))
             throw InputError(fmt::format(
                 "--sigma-s, --sigma-a: expected a sum in [{:g}, {:g}] 1/mm from {} to {} nm, got {} at {} nm",
-                smallest_sigma_t_per_mm, largest_sigma_t_per_mm, first_lambda_nm, last_lambda_nm, sigma_t,
-                lambda));
+                smallest_sigma_t_per_mm, largest_sigma_t_per_mm, first_lambda_nm, last_lambda_nm, sigma_t, lambda));
     }
     return medium;
 }
@@ -76,9 +75,8 @@ Fluorophore fluorophore_of(const MaterialFlags& flags) {
     fluorophore.emission = spectrum_of("--emission", flags.emission, Outside::zero, 1.0);
     fluorophore.quantum_yield = flags.quantum_yield;
     if (!(fluorophore.emission.sum_1nm(first_lambda_nm, last_lambda_nm) > 0.0))
-        throw InputError(
-            fmt::format("--emission: expected some from {} to {} nm, got none at any whole nanometre",
-                        first_lambda_nm, last_lambda_nm));
+        throw InputError(fmt::format("--emission: expected some from {} to {} nm, got none at any whole nanometre",
+                                     first_lambda_nm, last_lambda_nm));
     return fluorophore;
 }
 
@@ -104,15 +102,13 @@ void add_material_flags(CLI::App& command, MaterialFlags& flags) {
         ->check(number_in(1.0, largest_green_eta))
         ->group("Material");
     command.add_flag("--fresnel", flags.fresnel, "The surface reflects")->group("Material");
-    command
-        .add_option("--fraction", flags.fraction, "Share of collisions that meet a fluorophore, where E is 1")
+    command.add_option("--fraction", flags.fraction, "Share of collisions that meet a fluorophore, where E is 1")
         ->type_name("C")
         ->check(number_in(0.0, 1.0))
         ->group("Material");
     spectrum("--excitation", flags.excitation, "Excitation E, 0 to 1");
     spectrum("--emission", flags.emission, "Emission, relative, 0 to 1");
-    command
-        .add_option("--quantum-yield", flags.quantum_yield, "Photons emitted for each taken up; default 1")
+    command.add_option("--quantum-yield", flags.quantum_yield, "Photons emitted for each taken up; default 1")
         ->type_name("Q")
         ->check(number_in(0.0, 1.0))
         ->group("Material");
@@ -127,8 +123,7 @@ bool has_material_flags(const CLI::App& command) {
 ProbeMaterial material_of(const CLI::App& command, const MaterialFlags& flags) {
     ProbeMaterial material;
     material.name = "command line";
-    if (!together(command, {"--sigma-s", "--sigma-a"}))
-        throw InputError("probe: expected --sigma-s and --sigma-a");
+    if (!together(command, {"--sigma-s", "--sigma-a"})) throw InputError("probe: expected --sigma-s and --sigma-a");
     material.medium = medium_of(flags);
     material.fresnel = flags.fresnel;
     if (together(command, {"--fraction", "--excitation", "--emission"})) {

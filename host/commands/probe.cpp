@@ -35,8 +35,7 @@ struct ProbeOptions {
 };
 
 // What a scene does not say, the command line or the default does.
-ProbeSettings settings_of(const CLI::App& command, const ProbeOptions& options,
-                          const RenderSettings& render) {
+ProbeSettings settings_of(const CLI::App& command, const ProbeOptions& options, const RenderSettings& render) {
     ProbeSettings settings = options.settings;
     settings.transport = render.transport;
     settings.lambda_min_nm = render.lambda_min_nm;
@@ -61,10 +60,10 @@ void check_source(const CLI::App& command, const ProbeOptions& options) {
 
 void warn_of_drops(const ProbeResult& result) {
     if (result.dropped > 1e-4)
-        warn(fmt::format(
-            "{} nm: {:.2g} of the light was cut off: it left beyond the sheet's edge, or no room or no "
-            "time was left for it",
-            result.lambda_ex_nm, result.dropped));
+        warn(
+            fmt::format("{} nm: {:.2g} of the light was cut off: it left beyond the sheet's edge, or no room or no "
+                        "time was left for it",
+                        result.lambda_ex_nm, result.dropped));
 }
 
 std::vector<ProbeResult> sweep(HalfSpaceProbe& probe, bool quiet) {
@@ -104,9 +103,7 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
     }
     std::vector<ProbeResult> matrix;
     if (!options.matrix_file.empty()) matrix = sweep(probe, options.quiet);
-    const auto write_json = [&] {
-        write_file_atomically(options.json_file, probe_json(result, material, settings));
-    };
+    const auto write_json = [&] { write_file_atomically(options.json_file, probe_json(result, material, settings)); };
     const auto write_matrix = [&] {
         write_file_atomically(options.matrix_file, probe_matrix_csv(matrix, material, settings));
     };
@@ -117,13 +114,11 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
 
 void add_probe_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "probe",
-        "Measure what a half-space of a translucent material sends back of a narrow beam of one wavelength");
+        "probe", "Measure what a half-space of a translucent material sends back of a narrow beam of one wavelength");
     const auto options = std::make_shared<ProbeOptions>();
     ProbeSettings& settings = options->settings;
     command->add_option("scene", options->scene_file, "Scene file")->type_name("SCENE.json");
-    command->add_option("--material", options->material, "Translucent material of the scene")
-        ->type_name("NAME");
+    command->add_option("--material", options->material, "Translucent material of the scene")->type_name("NAME");
     add_material_flags(*command, options->flags);
     command->add_option("--model", options->model, "Transport model; default: the scene's, else conserving")
         ->type_name("MODEL")
@@ -136,16 +131,13 @@ void add_probe_command(CLI::App& app) {
     command->add_option("--angle", settings.angle_deg, "Angle of incidence [deg]; default 0")
         ->type_name("DEG")
         ->check(number_in(0.0, 89.9));
-    command
-        ->add_option("--photons", settings.photons, "Photons for each set of 16 wavelengths; default 1000000")
+    command->add_option("--photons", settings.photons, "Photons for each set of 16 wavelengths; default 1000000")
         ->check(number_in(least_probe_photons, 1e12));
     command->add_option("--seed", settings.seed, "Seed of the random numbers; default 1");
     command->add_option("--step", settings.step_nm, "Step of the wavelengths that are read [nm]; default 5")
         ->type_name("NM")
         ->check(CLI::Range(1, 50));
-    command
-        ->add_option("--lambda-min", options->lambda_min_nm,
-                     "The first of them; default: the scene's, else 300")
+    command->add_option("--lambda-min", options->lambda_min_nm, "The first of them; default: the scene's, else 300")
         ->type_name("NM")
         ->check(CLI::Range(300, 830));
     command->add_option("--lambda-max", options->lambda_max_nm, "Their end; default: the scene's, else 780")
@@ -153,8 +145,7 @@ void add_probe_command(CLI::App& app) {
         ->check(CLI::Range(300, 830));
     command->add_option("--bins", settings.bins, "Bins of distance from the beam; default 40")
         ->check(CLI::Range(2, 10000));
-    command
-        ->add_option("--r-max", options->r_max_mm, "End of the last of them [mm]; default: from the material")
+    command->add_option("--r-max", options->r_max_mm, "End of the last of them [mm]; default: from the material")
         ->type_name("MM")
         ->check(number_in(1e-9, 1e12));
     command->add_option("--json", options->json_file, "All that was measured")->type_name("FILE.json");

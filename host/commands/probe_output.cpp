@@ -12,8 +12,8 @@ namespace stokes {
 
 namespace {
 
-constexpr std::array<const char*, probe_component_count> names = {"specular", "single", "multiple",
-                                                                  "fluorescence", "total"};
+constexpr std::array<const char*, probe_component_count> names = {"specular", "single", "multiple", "fluorescence",
+                                                                  "total"};
 
 const std::string& model_of(const ProbeSettings& settings) {
     return transport_words[static_cast<std::size_t>(settings.transport)];
@@ -28,8 +28,7 @@ std::string spectrum_table(const ProbeResult& result) {
     for (std::size_t i = 0; i < result.lambda_nm.size(); ++i) {
         const Measured& m = result.reflectance[probe_fluorescence][i];
         if (m.value != 0.0)
-            text +=
-                fmt::format("  {:>8}  {:>12.4e} +- {:.1e}\n", result.lambda_nm[i], m.value, m.standard_error);
+            text += fmt::format("  {:>8}  {:>12.4e} +- {:.1e}\n", result.lambda_nm[i], m.value, m.standard_error);
     }
     return text.empty() ? text : "\nfluorescence [1/nm] by wavelength [nm]\n" + text;
 }
@@ -51,13 +50,9 @@ std::string radial_table(const ProbeResult& result) {
     return text;
 }
 
-std::string number(double value) {
-    return fmt::format("{:.8g}", value);
-}
+std::string number(double value) { return fmt::format("{:.8g}", value); }
 
-std::string array(const std::vector<std::string>& items) {
-    return fmt::format("[{}]", fmt::join(items, ", "));
-}
+std::string array(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ", ")); }
 
 template <class T, class Text>
 std::string array_of(const std::vector<T>& values, const Text& text) {
@@ -66,12 +61,8 @@ std::string array_of(const std::vector<T>& values, const Text& text) {
     return array(items);
 }
 
-std::string value_of(const Measured& m) {
-    return number(m.value);
-}
-std::string error_of(const Measured& m) {
-    return number(m.standard_error);
-}
+std::string value_of(const Measured& m) { return number(m.value); }
+std::string error_of(const Measured& m) { return number(m.standard_error); }
 
 using Members = std::vector<std::pair<std::string, std::string>>;
 
@@ -84,21 +75,18 @@ std::string object(const Members& members, const char* indent) {
 
 // Every component from the first one on, as text.
 template <class Values, class Text>
-std::string by_component(const Values& values, const Text& text, Members members = {},
-                         std::size_t first = 0) {
-    for (std::size_t c = first; c < probe_component_count; ++c)
-        members.emplace_back(names[c], text(values[c]));
+std::string by_component(const Values& values, const Text& text, Members members = {}, std::size_t first = 0) {
+    for (std::size_t c = first; c < probe_component_count; ++c) members.emplace_back(names[c], text(values[c]));
     return object(members, "  ");
 }
 
 }  // namespace
 
-std::string probe_table(const ProbeResult& result, const ProbeMaterial& material,
-                        const ProbeSettings& settings) {
-    std::string text = fmt::format(
-        "{}, {}{}: {} nm at {:g} deg, {} photons for each of {} set{} of wavelengths\n\n", material.name,
-        model_of(settings), settings.first_collision_only ? " (first collision)" : "", result.lambda_ex_nm,
-        settings.angle_deg, result.photons, result.sets, result.sets == 1 ? "" : "s");
+std::string probe_table(const ProbeResult& result, const ProbeMaterial& material, const ProbeSettings& settings) {
+    std::string text =
+        fmt::format("{}, {}{}: {} nm at {:g} deg, {} photons for each of {} set{} of wavelengths\n\n", material.name,
+                    model_of(settings), settings.first_collision_only ? " (first collision)" : "", result.lambda_ex_nm,
+                    settings.angle_deg, result.photons, result.sets, result.sets == 1 ? "" : "s");
     text += "energy leaving per energy arriving\n";
     for (std::size_t c = 0; c < probe_component_count; ++c) text += share_line(names[c], result.totals[c]);
     const auto& emission = result.reflectance[probe_fluorescence];
@@ -106,17 +94,15 @@ std::string probe_table(const ProbeResult& result, const ProbeMaterial& material
                                             [](const auto& a, const auto& b) { return a.value < b.value; });
     if (brightest->value > 0.0) {
         text += share_line("fluorescence", result.emitted_photons, " photons leaving per photon arriving");
-        text +=
-            share_line("brightest", *brightest,
-                       fmt::format(" per nm, at {} nm",
-                                   result.lambda_nm[static_cast<std::size_t>(brightest - emission.begin())])
-                           .c_str());
+        text += share_line(
+            "brightest", *brightest,
+            fmt::format(" per nm, at {} nm", result.lambda_nm[static_cast<std::size_t>(brightest - emission.begin())])
+                .c_str());
     }
     return text + spectrum_table(result) + radial_table(result);
 }
 
-std::string probe_json(const ProbeResult& result, const ProbeMaterial& material,
-                       const ProbeSettings& settings) {
+std::string probe_json(const ProbeResult& result, const ProbeMaterial& material, const ProbeSettings& settings) {
     const auto values = [](const std::vector<Measured>& list) { return array_of(list, value_of); };
     const auto errors = [](const std::vector<Measured>& list) { return array_of(list, error_of); };
     const auto integer = [](int value) { return std::to_string(value); };
@@ -138,8 +124,7 @@ std::string probe_json(const ProbeResult& result, const ProbeMaterial& material,
         {"totals_standard_error", by_component(result.totals, error_of)},
         {"emitted_photons", value_of(result.emitted_photons)},
         {"emitted_photons_standard_error", error_of(result.emitted_photons)},
-        {"radial",
-         by_component(result.radial, values, {{"r_mm", array_of(result.r_mm, number)}}, probe_single)},
+        {"radial", by_component(result.radial, values, {{"r_mm", array_of(result.r_mm, number)}}, probe_single)},
         {"radial_standard_error", by_component(result.radial, errors, {}, probe_single)},
         {"beyond", by_component(result.beyond, value_of, {}, probe_single)},
         {"dropped", number(result.dropped)},
@@ -166,8 +151,7 @@ std::string probe_matrix_csv(const std::vector<ProbeResult>& results, const Prob
         const double elastic = result.totals[probe_specular].value + result.totals[probe_single].value +
                                result.totals[probe_multiple].value;
         text += fmt::format("{},{:.6g}", result.lambda_ex_nm, elastic);
-        for (const Measured& m : result.reflectance[probe_fluorescence])
-            text += fmt::format(",{:.6g}", m.value);
+        for (const Measured& m : result.reflectance[probe_fluorescence]) text += fmt::format(",{:.6g}", m.value);
         text += "\n";
     }
     return text;

@@ -61,13 +61,9 @@ void print_share(double share) {
 Progress::Progress(std::uint32_t passes, bool quiet)
     : passes_(passes), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), last_(start_) {}
 
-double Progress::elapsed_s() const {
-    return std::chrono::duration<double>(Clock::now() - start_).count();
-}
+double Progress::elapsed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-double Progress::processor_s() const {
-    return static_cast<double>(std::clock() - processor_start_) / CLOCKS_PER_SEC;
-}
+double Progress::processor_s() const { return static_cast<double>(std::clock() - processor_start_) / CLOCKS_PER_SEC; }
 
 void Progress::preparing() {
     if (!quiet_) show("preparing (compiling kernels ...)");

@@ -96,10 +96,9 @@ void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) 
     if (command.count("--size")) {
         char rest = 0;
         int width = 0, height = 0;
-        if (std::sscanf(options.size.c_str(), "%5dx%5d%c", &width, &height, &rest) != 2 || width < 1 ||
-            height < 1 || width > 16384 || height > 16384)
-            throw InputError("--size: expected WIDTHxHEIGHT in pixels, each 1 to 16384, got \"" +
-                             options.size + "\"");
+        if (std::sscanf(options.size.c_str(), "%5dx%5d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
+            width > 16384 || height > 16384)
+            throw InputError("--size: expected WIDTHxHEIGHT in pixels, each 1 to 16384, got \"" + options.size + "\"");
         scene.film.width = width;
         scene.film.height = height;
     }
@@ -176,14 +175,12 @@ void say_what_was_dropped(const RenderStats& stats) {
                    stats.photons_emitted);
 }
 
-void write_results(const RenderOptions& options, const Scene& scene, const FilmImage& film,
-                   const RenderStats& stats, const ErrorCurve* curve) {
+void write_results(const RenderOptions& options, const Scene& scene, const FilmImage& film, const RenderStats& stats,
+                   const ErrorCurve* curve) {
     if (const std::size_t bad = count_non_finite(film))
         warn(fmt::format("{} pixels are not finite and are shown black", bad));
     const double exposure = scene.film.exposure_ev ? *scene.film.exposure_ev : automatic_exposure_ev(film);
-    const auto write_picture = [&] {
-        write_exr(options.exr_file, film, exr_metadata(scene, stats, exposure));
-    };
+    const auto write_picture = [&] { write_exr(options.exr_file, film, exr_metadata(scene, stats, exposure)); };
     const auto write_developed = [&] {
         write_png(options.png_file, develop(film, exposure), {{"Software", "stokes " STOKES_VERSION}});
     };
@@ -278,9 +275,7 @@ void render(const CLI::App& command, const RenderOptions& options) {
 
 }  // namespace
 
-int interrupted_signal() {
-    return caught_signal;
-}
+int interrupted_signal() { return caught_signal; }
 
 void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Render a scene");
@@ -342,13 +337,10 @@ void add_render_command(CLI::App& app) {
         ->type_name("EV")
         ->check(number_in(-100.0, 100.0));
     add_device_flags(*command, options->device);
-    command
-        ->add_option("--max-memory", options->max_memory_gib,
-                     "Device memory to use at most; default: 3/4 of it")
+    command->add_option("--max-memory", options->max_memory_gib, "Device memory to use at most; default: 3/4 of it")
         ->type_name("GiB")
         ->check(number_in(1e-3, 1e6));
-    command
-        ->add_option("--kernel-dir", options->kernel_directory, "Read the kernels from here, for development")
+    command->add_option("--kernel-dir", options->kernel_directory, "Read the kernels from here, for development")
         ->check(CLI::ExistingDirectory);
     command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
     command->callback([command, options] { render(*command, *options); });

@@ -38,8 +38,7 @@ bool needs_tables(const Material& material) {
     return material.kind == MaterialKind::translucent && material.subsurface && material.medium >= 0;
 }
 
-void write_tables(const std::vector<PowerTable>& tables, const std::string& material,
-                  const fs::path& folder) {
+void write_tables(const std::vector<PowerTable>& tables, const std::string& material, const fs::path& folder) {
     for (const PowerTable& table : tables) {
         const std::string path = (folder / fmt::format("{}.{}.json", material, table.component)).string();
         write_power_table(table, path);
@@ -58,8 +57,7 @@ void run_tables(const TablesOptions& options) {
             if (tables.empty()) {
                 const Medium& m = scene.media[i];
                 const MediumSpectra medium{m.name, m.sigma_s, m.sigma_a, m.eta, m.dipole_eta};
-                tables = {make_fluorescence_table(medium), make_single_table(medium),
-                          make_multiple_table(medium)};
+                tables = {make_fluorescence_table(medium), make_single_table(medium), make_multiple_table(medium)};
                 create_folder(options.output);
             }
             write_tables(tables, material.name, options.output);
@@ -67,8 +65,8 @@ void run_tables(const TablesOptions& options) {
         }
     }
     if (!any)
-        throw InputError(fmt::format(
-            "{}: no translucent material with subsurface scattering, so no tables to write", options.scene));
+        throw InputError(fmt::format("{}: no translucent material with subsurface scattering, so no tables to write",
+                                     options.scene));
 }
 
 void run_green(const TablesOptions& options) {
@@ -90,12 +88,11 @@ void add_tables_command(CLI::App& app) {
         ->add_option("-o,--output", options->output,
                      "Folder for the tables, created if it is not there; with --green, the file")
         ->required();
-    CLI::Option* green = command->add_flag(
-        "--green", options->green, "Compute the Green's function of a half-space by random walks (.json.gz)");
+    CLI::Option* green = command->add_flag("--green", options->green,
+                                           "Compute the Green's function of a half-space by random walks (.json.gz)");
     command->add_option("--eta", options->eta, "Refractive index, 1 to 4")->needs(green);
     command->add_option("--walks", options->walks, "Random walks from each depth")->needs(green);
-    command
-        ->add_option("--device", options->device, "OpenCL device: platform:device, part of a name, cpu, gpu")
+    command->add_option("--device", options->device, "OpenCL device: platform:device, part of a name, cpu, gpu")
         ->needs(green);
     command->add_option("--threads", options->threads, "CPU threads")->needs(green);
     command->callback([options] {

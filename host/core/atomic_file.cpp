@@ -87,8 +87,6 @@ void write_file_atomically(const std::string& path, std::string_view content) {
     flush_folder(target.parent_path());
 }
 
-void check_can_be_written(const std::string& path) {
-    const Temporary temporary(target_of(path).string(), path);
-}
+void check_can_be_written(const std::string& path) { const Temporary temporary(target_of(path).string(), path); }
 
 }  // namespace stokes

@@ -53,8 +53,7 @@ void add_row(CsvTable& table, std::int64_t line, std::string_view text) {
         const auto value = parse_double(fields[i]);
         if (!value || !std::isfinite(*value)) {
             fail(table, line,
-                 fmt::format("{}: expected a finite number, got \"{}\"", table.columns[i],
-                             printable(fields[i])));
+                 fmt::format("{}: expected a finite number, got \"{}\"", table.columns[i], printable(fields[i])));
         }
         table.values[i].push_back(*value);
     }
@@ -85,14 +84,11 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
             add_row(table, line, row);
         }
     }
-    if (table.lines.empty())
-        fail(table, scanner.line(), "expected a line of column names and rows of numbers");
+    if (table.lines.empty()) fail(table, scanner.line(), "expected a line of column names and rows of numbers");
     return table;
 }
 
-CsvTable read_csv(const std::string& path) {
-    return parse_csv(read_file(path), path);
-}
+CsvTable read_csv(const std::string& path) { return parse_csv(read_file(path), path); }
 
 Spectrum csv_spectrum(const CsvTable& table, const std::string& column, Outside outside) {
     const auto found = std::find(table.columns.begin() + 1, table.columns.end(), column);
@@ -105,8 +101,7 @@ Spectrum csv_spectrum(const CsvTable& table, const std::string& column, Outside 
     const auto& values = table.values[static_cast<std::size_t>(found - table.columns.begin())];
     for (std::size_t row = 0; row < values.size(); ++row) {
         if (values[row] < 0.0) {
-            fail(table, table.lines[row],
-                 fmt::format("{}: expected no negative value, got {}", column, values[row]));
+            fail(table, table.lines[row], fmt::format("{}: expected no negative value, got {}", column, values[row]));
         }
     }
     return {table.values[0], values, outside};

@@ -10,9 +10,7 @@ namespace {
 
 constexpr const char* replacement = "\xEF\xBF\xBD";
 
-std::uint8_t byte(char c) {
-    return static_cast<std::uint8_t>(c);
-}
+std::uint8_t byte(char c) { return static_cast<std::uint8_t>(c); }
 
 // Bytes of the UTF-8 character that text begins with; 0 where it begins with none (RFC 3629: no overlong
 // forms, no surrogates, nothing above U+10FFFF).

@@ -17,9 +17,7 @@
 namespace stokes {
 namespace {
 
-bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
-}
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
 // std::from_chars takes no leading plus sign, which files do contain.
 std::string_view without_plus(std::string_view token) {
@@ -42,8 +40,7 @@ std::string room_for(std::uintmax_t size, const std::string& path) {
         if (size > text.max_size()) throw std::bad_alloc();
         text.resize(static_cast<std::size_t>(size));
     } catch (const std::bad_alloc&) {
-        throw InputError(path + ": cannot read: too large for the memory, " + std::to_string(size >> 20) +
-                         " MiB");
+        throw InputError(path + ": cannot read: too large for the memory, " + std::to_string(size >> 20) + " MiB");
     }
     return text;
 }
@@ -65,13 +62,9 @@ std::string read_file(const std::string& path) {
     return text;
 }
 
-std::optional<double> parse_double(std::string_view token) {
-    return parse_whole<double>(token);
-}
+std::optional<double> parse_double(std::string_view token) { return parse_whole<double>(token); }
 
-std::optional<std::int64_t> parse_integer(std::string_view token) {
-    return parse_whole<std::int64_t>(token);
-}
+std::optional<std::int64_t> parse_integer(std::string_view token) { return parse_whole<std::int64_t>(token); }
 
 std::string printable(std::string_view text) {
     constexpr std::size_t longest = 40;
@@ -92,8 +85,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         std::size_t diagonal = row[0];
         row[0] = i + 1;
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const bool same = std::tolower(static_cast<unsigned char>(a[i])) ==
-                              std::tolower(static_cast<unsigned char>(b[j]));
+            const bool same =
+                std::tolower(static_cast<unsigned char>(a[i])) == std::tolower(static_cast<unsigned char>(b[j]));
             const std::size_t replaced = diagonal + (same ? 0 : 1);
             diagonal = row[j + 1];
             row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});

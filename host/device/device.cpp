@@ -27,8 +27,7 @@ struct Found {
     cl::Device device;
 };
 
-DeviceDescription describe(const cl::Platform& platform, const cl::Device& device, std::size_t p,
-                           std::size_t d) {
+DeviceDescription describe(const cl::Platform& platform, const cl::Device& device, std::size_t p, std::size_t d) {
     DeviceDescription result;
     result.selector = std::to_string(p) + ":" + std::to_string(d);
     result.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
@@ -70,8 +69,7 @@ std::vector<Found> find_devices() {
                            std::to_string(error.err()));
     }
     if (result.empty())
-        throw RunError(
-            "no OpenCL device was found; install a driver, for the CPU the package pocl-opencl-icd");
+        throw RunError("no OpenCL device was found; install a driver, for the CPU the package pocl-opencl-icd");
     return result;
 }
 
@@ -138,8 +136,7 @@ void Device::finish() const {
     try {
         shared_->queue.finish();
     } catch (const cl::Error& error) {
-        throw RunError(shared_->description.name + ": a kernel failed, OpenCL error " +
-                       std::to_string(error.err()));
+        throw RunError(shared_->description.name + ": a kernel failed, OpenCL error " + std::to_string(error.err()));
     }
     collect();
 }

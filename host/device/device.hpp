@@ -245,8 +245,7 @@ class Program {
 
 // Text of a kernel file with its #include "..." lines replaced by the files' text (each once), #line kept.
 // directory: where kernels are read from, empty for the embedded ones. RunError for a file that is not there.
-std::string expand_kernel_source(const std::string& name, const std::string& text,
-                                 const std::string& directory);
+std::string expand_kernel_source(const std::string& name, const std::string& text, const std::string& directory);
 std::string read_kernel_file(const std::string& file, const std::string& directory);
 
 }  // namespace stokes

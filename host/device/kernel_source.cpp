@@ -9,8 +9,8 @@ namespace stokes {
 
 namespace {
 
-void expand(const std::string& name, const std::string& text, const std::string& directory,
-            std::set<std::string>& seen, std::string& out) {
+void expand(const std::string& name, const std::string& text, const std::string& directory, std::set<std::string>& seen,
+            std::string& out) {
     std::istringstream lines(text);
     std::string line;
     const std::string folder = name.substr(0, name.rfind('/') + 1);  // of the including file; "" at the top
@@ -39,8 +39,7 @@ void expand(const std::string& name, const std::string& text, const std::string&
 std::string read_kernel_file(const std::string& file, const std::string& directory) {
     if (directory.empty()) {
         const auto found = embedded_files().find("kernels/" + file);
-        if (found == embedded_files().end())
-            throw RunError("kernel file kernels/" + file + " is not in this program");
+        if (found == embedded_files().end()) throw RunError("kernel file kernels/" + file + " is not in this program");
         return found->second;
     }
     std::ifstream in(directory + "/" + file, std::ios::binary);
@@ -50,8 +49,7 @@ std::string read_kernel_file(const std::string& file, const std::string& directo
     return text.str();
 }
 
-std::string expand_kernel_source(const std::string& name, const std::string& text,
-                                 const std::string& directory) {
+std::string expand_kernel_source(const std::string& name, const std::string& text, const std::string& directory) {
     std::set<std::string> seen{name};
     std::string out;
     expand(name, text, directory, seen, out);

@@ -47,9 +47,8 @@ fs::path stand_in() {
     struct stat found {};
     if (::lstat(folder.c_str(), &found) != 0 || !S_ISDIR(found.st_mode) || found.st_uid != ::getuid() ||
         (found.st_mode & 077) != 0 || !can_be_written(folder))
-        throw RunError(
-            folder.string() +
-            ": no folder of your own for compiled kernels can be made here; POCL_CACHE_DIR names another");
+        throw RunError(folder.string() +
+                       ": no folder of your own for compiled kernels can be made here; POCL_CACHE_DIR names another");
     return folder;
 }
 
@@ -74,8 +73,7 @@ void check_pocl_devices() {
             continue;
         }
         if (!word.empty() && word != "pthread" && word != "basic" && word != "cuda" && word != "ttasim")
-            throw InputError("POCL_DEVICES: \"" + word +
-                             "\" is not a PoCL device; expected pthread or basic");
+            throw InputError("POCL_DEVICES: \"" + word + "\" is not a PoCL device; expected pthread or basic");
         word.clear();
         if (*c == '\0') return;
     }

@@ -15,8 +15,7 @@ Program Program::from_source(const Device& device, const std::string& name, cons
     return program;
 }
 
-void Program::build(const std::string& name, const std::string& text,
-                    const std::vector<std::string>& options) {
+void Program::build(const std::string& name, const std::string& text, const std::vector<std::string>& options) {
     file_ = name;
     device_.check_stop();
     std::string flags = "-cl-std=CL1.2";
@@ -29,8 +28,7 @@ void Program::build(const std::string& name, const std::string& text,
     } catch (const cl::BuildError& error) {
         std::string log;
         for (const auto& entry : error.getBuildLog()) log += entry.second;
-        throw RunError("kernels/" + name + " does not compile on " + device_.description().name + ":\n" +
-                       log);
+        throw RunError("kernels/" + name + " does not compile on " + device_.description().name + ":\n" + log);
     } catch (const cl::Error& error) {
         throw RunError("kernels/" + name + ": " + error.what() + " failed with OpenCL error " +
                        std::to_string(error.err()));
@@ -41,8 +39,8 @@ Kernel Program::kernel(const std::string& name) const {
     try {
         return Kernel(device_, cl::Kernel(program_, name.c_str()), name);
     } catch (const cl::Error& error) {
-        throw RunError("kernels/" + file_ + " has no kernel " + name + " (OpenCL error " +
-                       std::to_string(error.err()) + ")");
+        throw RunError("kernels/" + file_ + " has no kernel " + name + " (OpenCL error " + std::to_string(error.err()) +
+                       ")");
     }
 }
 
@@ -63,12 +61,11 @@ void Kernel::enqueue(std::size_t work_items) {
     const SignalsHeldBack held_back;  // a first launch compiles
     try {
         cl::Event event;
-        device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(global), cl::NDRange(local),
-                                             nullptr, &event);
+        device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr,
+                                             &event);
         device_.record(name_, event);
     } catch (const cl::Error& error) {
-        throw RunError("kernel " + name_ + " could not be launched, OpenCL error " +
-                       std::to_string(error.err()));
+        throw RunError("kernel " + name_ + " could not be launched, OpenCL error " + std::to_string(error.err()));
     }
 }
 

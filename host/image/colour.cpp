@@ -10,13 +10,10 @@ namespace stokes {
 namespace {
 
 // Columns are the XYZ of a primary of luminance 1 at chromaticity (x, y).
-glm::dvec3 at_chromaticity(double x, double y) {
-    return {x / y, 1.0, (1.0 - x - y) / y};
-}
+glm::dvec3 at_chromaticity(double x, double y) { return {x / y, 1.0, (1.0 - x - y) / y}; }
 
 glm::dmat3 make_xyz_from_rec709() {
-    const glm::dmat3 primaries(at_chromaticity(0.64, 0.33), at_chromaticity(0.30, 0.60),
-                               at_chromaticity(0.15, 0.06));
+    const glm::dmat3 primaries(at_chromaticity(0.64, 0.33), at_chromaticity(0.30, 0.60), at_chromaticity(0.15, 0.06));
     const glm::dvec3 weight = glm::inverse(primaries) * at_chromaticity(0.3127, 0.3290);
     return {primaries[0] * weight.x, primaries[1] * weight.y, primaries[2] * weight.z};
 }
@@ -54,8 +51,7 @@ glm::dvec3 xyz_of(const Spectrum& radiance) {
     const ColourMatching& matching = cie1931();
     glm::dvec3 sum(0.0);
     for (int lambda = 300; lambda <= 830; ++lambda)
-        sum += radiance.at(lambda) *
-               glm::dvec3(matching.x.at(lambda), matching.y.at(lambda), matching.z.at(lambda));
+        sum += radiance.at(lambda) * glm::dvec3(matching.x.at(lambda), matching.y.at(lambda), matching.z.at(lambda));
     return luminous_efficacy * sum;
 }
 
@@ -64,13 +60,9 @@ const glm::dmat3& rec709_from_xyz() {
     return matrix;
 }
 
-glm::dvec3 rec709_of_xyz(const glm::dvec3& xyz) {
-    return rec709_from_xyz() * xyz;
-}
+glm::dvec3 rec709_of_xyz(const glm::dvec3& xyz) { return rec709_from_xyz() * xyz; }
 
-glm::dvec3 xyz_of_rec709(const glm::dvec3& rgb) {
-    return xyz_from_rec709() * rgb;
-}
+glm::dvec3 xyz_of_rec709(const glm::dvec3& rgb) { return xyz_from_rec709() * rgb; }
 
 glm::dvec3 oklab_of_rec709(const glm::dvec3& rgb) {
     const glm::dvec3 cones = rgb * cones_from_rec709;

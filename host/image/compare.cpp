@@ -115,9 +115,7 @@ std::vector<double> pixel_errors(const std::vector<float>& picture, const std::v
     return errors;
 }
 
-std::string shown_layer(const std::string& layer) {
-    return layer.empty() ? "whole" : layer;
-}
+std::string shown_layer(const std::string& layer) { return layer.empty() ? "whole" : layer; }
 
 std::vector<std::string> layers_in_order(const RgbLayers& layers) {
     std::vector<std::string> names;

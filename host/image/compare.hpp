@@ -17,17 +17,17 @@ namespace stokes {
 // Over the pixels that are finite in both pictures, and over X, Y and Z of each; d = picture - reference.
 // All NaN where there is no such pixel.
 struct LayerError {
-    double rmse = 0.0;           // sqrt(mean of d^2) [cd/m^2]
-    double relative_rmse = 0.0;  // rmse over the mean of |reference|; 0 / 0 is 0, and over a black reference infinite
-    double psnr_db = 0.0;     // 20 log10(peak / rmse); infinite without error, NaN where the peak is not above 0
-    double mean_error = 0.0;  // mean of d: the bias [cd/m^2]
-    double max_error = 0.0;   // largest |d| [cd/m^2]
+    double rmse = 0.0;            // sqrt(mean of d^2) [cd/m^2]
+    double relative_rmse = 0.0;   // rmse over the mean of |reference|; 0 / 0 is 0, and over a black reference infinite
+    double psnr_db = 0.0;         // 20 log10(peak / rmse); infinite without error, NaN where the peak is not above 0
+    double mean_error = 0.0;      // mean of d: the bias [cd/m^2]
+    double max_error = 0.0;       // largest |d| [cd/m^2]
     int max_x = 0, max_y = 0;     // its pixel, from the top left; of several the first in reading order
     std::size_t max_channel = 0;  // and its channel: 0 X, 1 Y, 2 Z
-    std::array<double, 3> rmse_xyz{}, mean_error_xyz{};  // by channel [cd/m^2]
-    double reference_mean = 0.0;                         // of |reference| [cd/m^2]
-    double peak = 0.0;                                   // largest value of the reference [cd/m^2]
-    std::size_t compared = 0;                            // pixels that are finite in both
+    std::array<double, 3> rmse_xyz{}, mean_error_xyz{};    // by channel [cd/m^2]
+    double reference_mean = 0.0;                           // of |reference| [cd/m^2]
+    double peak = 0.0;                                     // largest value of the reference [cd/m^2]
+    std::size_t compared = 0;                              // pixels that are finite in both
     std::size_t not_finite = 0, reference_not_finite = 0;  // pixels with a NaN or an infinity, in each
 };
 

@@ -12,13 +12,9 @@ constexpr double shoulder_start = 0.8;
 constexpr int chroma_steps = 14;  // halvings: well below what 8 bits show
 constexpr double lit_fraction = 1.0 / 200.0;
 
-double largest(const glm::dvec3& rgb) {
-    return std::max({rgb.r, rgb.g, rgb.b});
-}
+double largest(const glm::dvec3& rgb) { return std::max({rgb.r, rgb.g, rgb.b}); }
 
-double smallest(const glm::dvec3& rgb) {
-    return std::min({rgb.r, rgb.g, rgb.b});
-}
+double smallest(const glm::dvec3& rgb) { return std::min({rgb.r, rgb.g, rgb.b}); }
 
 // rgb with just so much of its chroma that no channel is negative; black where there is no light.
 glm::dvec3 into_gamut(const glm::dvec3& rgb) {
@@ -53,9 +49,7 @@ std::uint8_t to_byte(double linear) {
     return static_cast<std::uint8_t>(std::floor(255.0 * srgb_encode(linear) + 0.5));
 }
 
-glm::dvec3 pixel(const std::vector<float>& rgb, std::size_t at) {
-    return {rgb[at], rgb[at + 1], rgb[at + 2]};
-}
+glm::dvec3 pixel(const std::vector<float>& rgb, std::size_t at) { return {rgb[at], rgb[at + 1], rgb[at + 2]}; }
 
 // The value below which this fraction of values lies; reorders them.
 double percentile(std::vector<double>& values, double fraction) {
@@ -92,8 +86,7 @@ double automatic_exposure_ev(const FilmImage& film) {
     }
     if (values.empty()) return 0.0;
     const double threshold = lit_fraction * percentile(values, 0.995);
-    values.erase(std::remove_if(values.begin(), values.end(), [=](double v) { return v < threshold; }),
-                 values.end());
+    values.erase(std::remove_if(values.begin(), values.end(), [=](double v) { return v < threshold; }), values.end());
     return std::log2(shoulder_start / percentile(values, 0.95));
 }
 

@@ -33,8 +33,7 @@ std::string channel_name(const std::string& layer, const char* channel) {
 
 Imf::Slice slice(std::vector<float>& rgb, int width, std::size_t channel) {
     const std::size_t pixel = 3 * sizeof(float);
-    return {Imf::FLOAT, reinterpret_cast<char*>(rgb.data() + channel), pixel,
-            pixel * static_cast<std::size_t>(width)};
+    return {Imf::FLOAT, reinterpret_cast<char*>(rgb.data() + channel), pixel, pixel * static_cast<std::size_t>(width)};
 }
 
 // The one line that says why: OpenEXR puts a sentence with the file's name before it.
@@ -47,8 +46,7 @@ std::string reason_of(const std::exception& error) {
 
 void add_metadata(Imf::Header& header, const Metadata& metadata) {
     for (const auto& [name, value] : metadata) {
-        if (const auto* text = std::get_if<std::string>(&value))
-            header.insert(name, Imf::StringAttribute(*text));
+        if (const auto* text = std::get_if<std::string>(&value)) header.insert(name, Imf::StringAttribute(*text));
         if (const auto* whole = std::get_if<int>(&value)) header.insert(name, Imf::IntAttribute(*whole));
         if (const auto* real = std::get_if<double>(&value)) header.insert(name, Imf::DoubleAttribute(*real));
     }
@@ -85,8 +83,7 @@ std::string read_bytes(const std::string& path) {
     if (error) throw InputError(fmt::format("{}: cannot read: {}", path, error.message()));
     std::string bytes(size, '\0');
     std::ifstream file(path, std::ios::binary);
-    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-        throw InputError(path + ": cannot read");
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw InputError(path + ": cannot read");
     return bytes;
 }
 

@@ -16,9 +16,8 @@ FilmImage::FilmImage(int width_px, int height_px) : width(width_px), height(heig
 std::vector<float> component_rgb(const FilmImage& film, Component component) {
     const std::vector<float>& xyz = film.xyz[static_cast<std::size_t>(component)];
     if (xyz.size() != film.pixels() * 3)
-        throw RunError(fmt::format("film of {} x {} pixels has {} values in its {} component", film.width,
-                                   film.height, xyz.size(),
-                                   component_names[static_cast<std::size_t>(component)]));
+        throw RunError(fmt::format("film of {} x {} pixels has {} values in its {} component", film.width, film.height,
+                                   xyz.size(), component_names[static_cast<std::size_t>(component)]));
     std::vector<float> rgb(xyz.size());
     for (std::size_t i = 0; i < xyz.size(); i += 3) {
         const glm::dvec3 colour = rec709_of_xyz({xyz[i], xyz[i + 1], xyz[i + 2]});

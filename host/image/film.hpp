@@ -12,8 +12,8 @@ namespace stokes {
 // What the light last went through before it reached the camera.
 enum class Component { fluorescence, single, multiple, surface };
 inline constexpr std::size_t component_count = 4;
-inline constexpr std::array<const char*, component_count> component_names = {"fluorescence", "single",
-                                                                             "multiple", "surface"};
+inline constexpr std::array<const char*, component_count> component_names = {"fluorescence", "single", "multiple",
+                                                                             "surface"};
 
 // XYZ (colour.hpp: Y in cd/m^2) of each component, index (y * width + x) * 3 + channel, top row first.
 struct FilmImage {

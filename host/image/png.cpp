@@ -53,14 +53,12 @@ bool encode(const Rgb8& image, const std::vector<png_text>& text, Encoding& enco
     }
     png_set_write_fn(png, &encoding, append, flush_nothing);
     png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_text(png, info, text.data(), static_cast<int>(text.size()));
     png_write_info(png, info);
     for (int y = 0; y < image.height; ++y)
-        png_write_row(
-            png, image.rgb.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) * 3);
+        png_write_row(png, image.rgb.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) * 3);
     png_write_end(png, nullptr);
     png_destroy_write_struct(&png, &info);
     return true;
@@ -69,10 +67,9 @@ bool encode(const Rgb8& image, const std::vector<png_text>& text, Encoding& enco
 }  // namespace
 
 void write_png(const std::string& path, const Rgb8& image, const std::map<std::string, std::string>& text) {
-    if (image.rgb.size() !=
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3)
-        throw RunError(fmt::format("{}: cannot write: {} x {} pixels with {} values", path, image.width,
-                                   image.height, image.rgb.size()));
+    if (image.rgb.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3)
+        throw RunError(fmt::format("{}: cannot write: {} x {} pixels with {} values", path, image.width, image.height,
+                                   image.rgb.size()));
     std::vector<png_text> chunks;
     for (const auto& [key, value] : text) {
         png_text chunk{};
@@ -83,8 +80,7 @@ void write_png(const std::string& path, const Rgb8& image, const std::map<std::s
         chunks.push_back(chunk);
     }
     Encoding encoding;
-    if (!encode(image, chunks, encoding))
-        throw RunError(fmt::format("{}: cannot write: {}", path, encoding.error));
+    if (!encode(image, chunks, encoding)) throw RunError(fmt::format("{}: cannot write: {}", path, encoding.error));
     write_file_atomically(path, encoding.bytes);
 }
 

@@ -40,8 +40,7 @@ std::vector<const Shape*> bodies_of(const Scene& scene, int material) {
     std::vector<const Shape*> bodies;
     for (const Shape& shape : scene.shapes) {
         const auto known = [&](const Shape* other) { return other->body == shape.body; };
-        if (shape.material == material && std::none_of(bodies.begin(), bodies.end(), known))
-            bodies.push_back(&shape);
+        if (shape.material == material && std::none_of(bodies.begin(), bodies.end(), known)) bodies.push_back(&shape);
     }
     return bodies;
 }
@@ -64,9 +63,7 @@ struct Worst {
     }
 };
 
-std::string length_text(double mm) {
-    return std::isfinite(mm) ? fmt::format("{:.3g} mm", mm) : "any distance";
-}
+std::string length_text(double mm) { return std::isfinite(mm) ? fmt::format("{:.3g} mm", mm) : "any distance"; }
 
 std::string thin_line(const Worst& thinnest, const Length& reach) {
     return fmt::format(
@@ -110,8 +107,7 @@ std::vector<std::string> model_remarks(const Scene& scene) {
     std::vector<std::string> lines;
     if (scene.render.transport != Transport::paper) return lines;
     for (const Fluorophore& fluorophore : scene.fluorophores) {
-        const double gain =
-            fluorophore.conversion * fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
+        const double gain = fluorophore.conversion * fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
         if (gain > 1.0)
             lines.push_back(fmt::format(
                 "{}: fluorophores.{}: emits up to {:.3g} times what it takes up (conversion_per_nm times the "
@@ -122,8 +118,8 @@ std::vector<std::string> model_remarks(const Scene& scene) {
     for (const Material& material : scene.materials)
         if (material.fresnel) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
     if (!names.empty())
-        lines.push_back(fmt::format(
-            "{}: materials: transport \"paper\" leaves out the Fresnel reflection of {}", scene.file, names));
+        lines.push_back(fmt::format("{}: materials: transport \"paper\" leaves out the Fresnel reflection of {}",
+                                    scene.file, names));
     return lines;
 }
 
@@ -135,8 +131,8 @@ std::vector<std::string> failed_assumptions(const Scene& scene) {
         if (material.kind != MaterialKind::translucent || !material.subsurface) continue;
         const std::string failed = failure(scene, static_cast<int>(i));
         if (failed.empty()) continue;
-        lines.push_back(fmt::format("{}: materials.{}: {}; transport \"{}\" takes it for a half-space",
-                                    scene.file, material.name, failed,
+        lines.push_back(fmt::format("{}: materials.{}: {}; transport \"{}\" takes it for a half-space", scene.file,
+                                    material.name, failed,
                                     transport_words[static_cast<std::size_t>(scene.render.transport)]));
     }
     return lines;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/render/device_lights.hpp"
+#include "host/render/device_materials.hpp"
 #include "host/render/green_resampler.hpp"
 #include "host/render/green_walk.hpp"
 #include "host/render/pass_spectra.hpp"
@@ -11,7 +13,6 @@
 #include "host/scene/mesh_topology.hpp"
 #include "host/subsurface/distance_mixture.hpp"
 #include "host/subsurface/distance_sampler.hpp"
-#include "host/subsurface/fresnel.hpp"
 
 namespace stokes {
 
@@ -25,51 +26,11 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
     to.insert(to.end(), more.begin(), more.end());
 }
 
-bool has_subsurface(const Material& material) {
-    return material.kind == MaterialKind::translucent && material.subsurface;
-}
-
-bool reflects(const Scene& scene, const Material& material) {
-    return has_subsurface(material) && material.fresnel && scene.render.transport != Transport::paper;
-}
-
-// Index of the owner of a material's tables.
-std::uint32_t table_owner(const Scene& scene, const Material& material) {
-    const auto medium = static_cast<std::uint32_t>(material.medium);
-    if (scene.render.transport == Transport::paper) return medium;
-    return 2 * medium + (reflects(scene, material) ? 1 : 0);
-}
-
-std::vector<MaterialRecord> material_records(const Scene& scene) {
-    const SpectraLayout layout(scene);
-    std::vector<MaterialRecord> records;
-    for (const Material& material : scene.materials) {
-        MaterialRecord record{};
-        record.kind = material.kind == MaterialKind::diffuse       ? STOKES_DIFFUSE
-                      : material.kind == MaterialKind::translucent ? STOKES_TRANSLUCENT
-                                                                   : STOKES_BLACK;
-        const bool subsurface = has_subsurface(material);
-        record.medium = subsurface ? table_owner(scene, material) : STOKES_NONE;
-        record.fluorescent_fraction = static_cast<float>(material.fluorescent_fraction);
-        const double eta = subsurface ? scene.media[static_cast<std::size_t>(material.medium)].eta : 1.0;
-        record.eta = static_cast<float>(eta);
-        const bool fluorescent = material.fluorophore >= 0;
-        record.excitation_row = fluorescent ? layout.excitation_row(material.fluorophore) : STOKES_NONE;
-        record.reradiation_row = fluorescent ? layout.reradiation_row(material.fluorophore) : STOKES_NONE;
-        record.sigma_row = subsurface ? layout.sigma_row(material.medium) : STOKES_NONE;
-        record.exit_scale =
-            reflects(scene, material) ? static_cast<float>(1.0 / (1.0 - diffuse_reflectance(eta))) : 0.0f;
-        records.push_back(record);
-    }
-    return records;
-}
-
 // By index of Scene::media: some material has it below its surface.
 std::vector<bool> needed_media(const Scene& scene) {
     std::vector<bool> needed(scene.media.size(), false);
     for (const Material& material : scene.materials)
-        if (has_subsurface(material))
-            needed[static_cast<std::size_t>(material.medium)] = true;
+        if (has_subsurface(material)) needed[static_cast<std::size_t>(material.medium)] = true;
     return needed;
 }
 
@@ -77,9 +38,7 @@ MediumSpectra spectra_of(const Medium& medium) {
     return {medium.name, medium.sigma_s, medium.sigma_a, medium.eta, medium.dipole_eta};
 }
 
-bool integrates(const Scene& scene) {
-    return scene.render.transport == Transport::paper && !scene.render.tables;
-}
+bool integrates(const Scene& scene) { return scene.render.transport == Transport::paper && !scene.render.tables; }
 
 IntegratedMedia upload_integrated_media(const Device& device, const Scene& scene) {
     const std::vector<bool> needed = needed_media(scene);
@@ -144,7 +103,8 @@ DeviceTables reserve_green_tables(const Device& device, const Scene& scene) {
         }
         for (const bool fresnel : {false, true}) {
             const auto owned = [&](const Material& material) {
-                return has_subsurface(material) && material.medium == static_cast<int>(m) && material.fresnel == fresnel;
+                return has_subsurface(material) && material.medium == static_cast<int>(m) &&
+                       material.fresnel == fresnel;
             };
             if (std::none_of(scene.materials.begin(), scene.materials.end(), owned)) continue;
             GreenOwner owner;
@@ -185,61 +145,6 @@ std::vector<std::uint32_t> body_kinds(const Scene& scene) {
     return kinds;
 }
 
-struct LightTables {
-    std::vector<LightRecord> records;
-    std::vector<float> areas;
-    std::vector<double> surface_area_mm2;
-};
-
-void set_ball(LightRecord& record, const Mesh& mesh) {
-    glm::vec3 low(INFINITY), high(-INFINITY);
-    for (const glm::vec3& p : mesh.positions_mm) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const glm::vec3 centre = 0.5f * (low + high);
-    record.px = centre.x, record.py = centre.y, record.pz = centre.z;
-    for (const glm::vec3& p : mesh.positions_mm) record.ball_mm = std::max(record.ball_mm, glm::length(p - centre));
-}
-
-// first_triangle: of each shape in the Triangle buffer.
-LightTables light_tables(const Scene& scene, const std::vector<double>& probability,
-                         const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& first_triangle) {
-    LightTables tables;
-    double cumulative = 0.0;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const Light& light = scene.lights[i];
-        LightRecord record{};
-        cumulative += probability[i];
-        record.cumulative_probability = i + 1 == scene.lights.size() ? 1.0f : static_cast<float>(cumulative);
-        double area = 0.0;
-        if (light.kind == LightKind::surface) {
-            const auto shape = static_cast<std::size_t>(light.shape);
-            set_ball(record, scene.shapes[shape].mesh);
-            record.kind = STOKES_LIGHT_SURFACE;
-            record.first_triangle = first_triangle[shape];
-            record.triangle_count = first_triangle[shape + 1] - first_triangle[shape];
-            record.first_area = static_cast<std::uint32_t>(tables.areas.size());
-            for (std::uint32_t t = 0; t < record.triangle_count; ++t) {
-                const Triangle& tri = triangles[record.first_triangle + t];
-                area += 0.5 * glm::length(glm::cross(glm::dvec3(tri.e1x, tri.e1y, tri.e1z),
-                                                     glm::dvec3(tri.e2x, tri.e2y, tri.e2z)));
-                tables.areas.push_back(static_cast<float>(area));
-            }
-        } else {
-            record.kind = light.section == BeamSection::disk ? STOKES_LIGHT_BEAM_DISK : STOKES_LIGHT_BEAM_RECTANGLE;
-            const glm::vec3 p(light.position_mm), d(glm::normalize(light.direction)), u(light.half_u_mm), v(light.half_v_mm);
-            record.px = p.x, record.py = p.y, record.pz = p.z;
-            record.dx = d.x, record.dy = d.y, record.dz = d.z;
-            record.ux = u.x, record.uy = u.y, record.uz = u.z;
-            record.vx = v.x, record.vy = v.y, record.vz = v.z;
-        }
-        tables.records.push_back(record);
-        tables.surface_area_mm2.push_back(area);
-    }
-    return tables;
-}
-
 }  // namespace
 
 std::vector<Triangle> scene_triangles(const Scene& scene) {
@@ -250,8 +155,7 @@ std::vector<Triangle> scene_triangles(const Scene& scene) {
             const glm::vec3 a = shape.mesh.positions_mm[t.x];
             const glm::vec3 e1 = shape.mesh.positions_mm[t.y] - a, e2 = shape.mesh.positions_mm[t.z] - a;
             triangles.push_back({a.x, a.y, a.z, static_cast<std::uint32_t>(s), e1.x, e1.y, e1.z,
-                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z,
-                                 shape.two_sided ? 1u : 0u});
+                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z, shape.two_sided ? 1u : 0u});
         }
     }
     return triangles;

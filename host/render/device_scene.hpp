@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "host/device/device.hpp"
-#include "host/render/ray_casting.hpp"
 #include "host/render/device_textures.hpp"
+#include "host/render/ray_casting.hpp"
 #include "host/scene/scene.hpp"
 #include "host/subsurface/device_table.hpp"
 #include "host/subsurface/green_table.hpp"
@@ -22,9 +22,9 @@ namespace stokes {
 
 // A medium's Green's function tables, model `conserving`. They are made anew for every pass (SubsurfaceTables).
 struct GreenOwner {
-    int medium;              // index into Scene::media
-    double eta;              // of the tables: 1 where the surface does not reflect
-    std::size_t first_row;   // in the probabilities of escape
+    int medium;             // index into Scene::media
+    double eta;             // of the tables: 1 where the surface does not reflect
+    std::size_t first_row;  // in the probabilities of escape
     TableShape shape;
 };
 
@@ -32,16 +32,16 @@ struct GreenOwner {
 // Model `paper`: an owner is a medium, with three power tables. `conserving`: an owner is a medium with or without a
 // reflecting surface, with one table. `walk`: there are none.
 struct DeviceTables {
-    Buffer<TableShape> shapes;             // [3 owners]
-    Buffer<float> values;                  // paper: [entry][lambda]
-    Buffer<float> mean_rows;               // [entry] distance densities; paper: then as many, DistanceSampler's weighted
-    Buffer<float> cumulative_rows;         // likewise
-    Buffer<Flux16> at_wavelengths;         // [entry] at the pass's wavelengths
-    EvenAxis wavelengths;                  // of values [nm]
+    Buffer<TableShape> shapes;      // [3 owners]
+    Buffer<float> values;           // paper: [entry][lambda]
+    Buffer<float> mean_rows;        // [entry] distance densities; paper: then as many, DistanceSampler's weighted
+    Buffer<float> cumulative_rows;  // likewise
+    Buffer<Flux16> at_wavelengths;  // [entry] at the pass's wavelengths
+    UniformAxis wavelengths;        // of values [nm]
     std::uint32_t entries = 0;
-    std::vector<GreenOwner> green;         // conserving
+    std::vector<GreenOwner> green;              // conserving
     std::map<double, GreenTable> green_tables;  // by refractive index
-    std::size_t green_rows = 0;            // of all of them together
+    std::size_t green_rows = 0;                 // of all of them together
 };
 
 // Model `paper` without power tables: what distances are drawn from, and the media at the pass's wavelengths, both by
@@ -66,10 +66,10 @@ struct DeviceScene {
     Transport transport = Transport::paper;
     bool has_fresnel = false;  // some material reflects specularly
     DeviceTables tables;
-    std::optional<IntegratedMedia> integrated;   // in place of tables
-    std::vector<double> light_probability;      // per light
-    std::vector<double> light_surface_area_mm2;  // per light, 0 for beams
-    float offset_mm = 0.0f;                      // rays start this far off a surface
+    std::optional<IntegratedMedia> integrated;     // in place of tables
+    std::vector<double> light_probability;         // per light
+    std::vector<double> light_surface_area_mm2;    // per light, 0 for beams
+    float offset_mm = 0.0f;                        // rays start this far off a surface
     glm::vec3 minimum_mm{0.0f}, maximum_mm{0.0f};  // bounding box
     std::uint32_t light_count = 0;
 };

@@ -16,8 +16,7 @@ std::vector<TriangleUv> triangle_uvs(const Scene& scene) {
     std::vector<TriangleUv> result;
     for (const Shape& shape : scene.shapes)
         for (std::size_t i = 0; i < shape.mesh.triangles.size(); ++i) {
-            const std::array<glm::vec2, 3> uv =
-                shape.mesh.uv.empty() ? std::array<glm::vec2, 3>{} : shape.mesh.uv[i];
+            const std::array<glm::vec2, 3> uv = shape.mesh.uv.empty() ? std::array<glm::vec2, 3>{} : shape.mesh.uv[i];
             result.push_back({uv[0].x, uv[0].y, uv[1].x, uv[1].y, uv[2].x, uv[2].y});
         }
     return result;
@@ -43,9 +42,8 @@ DeviceTextures upload_textures(const Device& device, const Scene& scene) {
             first_texel[picture] = static_cast<std::uint32_t>(texels.size());
             texels.insert(texels.end(), picture->luminance.begin(), picture->luminance.end());
         }
-        records.push_back({static_cast<std::uint32_t>(picture->width),
-                           static_cast<std::uint32_t>(picture->height), first_texel[picture],
-                           layout.white_row(textures++)});
+        records.push_back({static_cast<std::uint32_t>(picture->width), static_cast<std::uint32_t>(picture->height),
+                           first_texel[picture], layout.white_row(textures++)});
     }
     if (records.empty()) records.push_back({0, 0, 0, STOKES_NONE});
     std::vector<TriangleUv> uv(1);

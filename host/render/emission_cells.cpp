@@ -32,9 +32,7 @@ struct Box {
     double gain = 0.0;
 };
 
-double root(double volume, double square) {
-    return std::sqrt(volume * square);
-}
+double root(double volume, double square) { return std::sqrt(volume * square); }
 
 class Partition {
   public:
@@ -148,12 +146,12 @@ EmissionCell record_of(const Box& box, double photons) {
 
 }  // namespace
 
-EmissionCells EmissionCells::even(const std::vector<EmittingLight>& lights, std::uint32_t photons) {
+EmissionCells EmissionCells::stratified(const std::vector<EmittingLight>& lights, std::uint32_t photons) {
     return aimed(lights, {}, 1.0, lights.size(), photons);
 }
 
 EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
-                                   double even_share, std::size_t most_cells, std::uint32_t photons) {
+                                   double uniform_share, std::size_t most_cells, std::uint32_t photons) {
     std::vector<Box> boxes = Partition(lights, samples).cut(std::min<std::size_t>(most_cells, photons / 3));
     const double least_share = least_photons / photons, rest = 1.0 - least_share * static_cast<double>(boxes.size());
     if (rest < 0.5) return {};
@@ -170,7 +168,7 @@ EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights, con
     for (Box& box : boxes) {
         const double aimed = roots > 0.0 ? root(box.volume, box.square) / roots : box.volume / volume;
         box.volume /= volume;
-        cells.shares_.push_back(least_share + rest * (even_share * box.volume + (1.0 - even_share) * aimed));
+        cells.shares_.push_back(least_share + rest * (uniform_share * box.volume + (1.0 - uniform_share) * aimed));
         cells.records_.push_back(record_of(box, cells.shares_.back() * photons));
     }
     return cells;

@@ -31,14 +31,14 @@ class EmissionCells {
 
     // For passes of this many photons, a cell a light: evenly spread. Lights of probability 0 have none. No cells at
     // all, which stands for random emission, where there are less than three photons a cell.
-    static EmissionCells even(const std::vector<EmittingLight>& lights, std::uint32_t photons);
+    static EmissionCells stratified(const std::vector<EmittingLight>& lights, std::uint32_t photons);
 
     // Cells that are small where the samples' squares differ, with photons in proportion to the root of each cell's
-    // mean square, which makes the variance of the picture least; but an even_share of the photons as even() spreads
-    // them, so that hardly a photon weighs more than 1/even_share, and one and a half photons to each cell. At most
-    // most_cells, or even() where no sample has a value.
+    // mean square, which makes the variance of the picture least; but an uniform_share of the photons as stratified()
+    // spreads them, so that hardly a photon weighs more than 1/uniform_share, and one and a half photons to each cell.
+    // At most most_cells, or stratified() where no sample has a value.
     static EmissionCells aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
-                               double even_share, std::size_t most_cells, std::uint32_t photons);
+                               double uniform_share, std::size_t most_cells, std::uint32_t photons);
 
     const std::vector<EmissionCell>& records() const { return records_; }
     // Share of the photons, in the order of records; their sum is 1.

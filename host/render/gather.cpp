@@ -17,11 +17,11 @@ Gather::Gather(const Device& device, const RayKernels& kernels, const CameraReco
     choose_radii_ = counting.kernel("choose_radii");
 }
 
-void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass,
-                            const Buffer<Ray>& rays, const Buffer<Hit>& hits, const Buffer<FilmValue>& film) {
-    collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes,
-                           scene.materials, scene.emitted, scene.textures.records, scene.textures.texels,
-                           scene.textures.uv, points_, film);
+void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
+                            const Buffer<Hit>& hits, const Buffer<FilmValue>& film) {
+    collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes, scene.materials,
+                           scene.emitted, scene.textures.records, scene.textures.texels, scene.textures.uv, points_,
+                           film);
 }
 
 void Gather::add_direct_light(const DeviceScene& on_device, const GatherScene& scene, const Buffer<PassConstants>& pass,
@@ -36,8 +36,8 @@ void Gather::add_direct_light(const DeviceScene& on_device, const GatherScene& s
 
 void Gather::count_photons(std::uint32_t map, std::uint32_t level, const SpatialHash& photons,
                            const Buffer<float>& counts) {
-    count_photons_.launch(pixels(), points_, pixels(), map, level, enough_photons, photons.grid(), photons.cell_starts(),
-                          photons.positions(), photons.normals(), photons.flux(), counts);
+    count_photons_.launch(pixels(), points_, pixels(), map, level, enough_photons, photons.grid(),
+                          photons.cell_starts(), photons.positions(), photons.normals(), photons.flux(), counts);
 }
 
 void Gather::set_radii(const std::vector<PixelRadius>& pixels) {
@@ -50,8 +50,8 @@ void Gather::choose_radii() {
 }
 
 void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm) {
-    measure_disks_.launch(pixels(), pixels(), radius_mm, pass, scene.rays.nodes, scene.rays.blocks, scene.rays.grid, scene.triangles,
-                          points_);
+    measure_disks_.launch(pixels(), pixels(), radius_mm, pass, scene.rays.nodes, scene.rays.blocks, scene.rays.grid,
+                          scene.triangles, points_);
 }
 
 void Gather::add_map(std::uint32_t map, float radius_class, const SpatialHash& photons, const GatherScene& scene,

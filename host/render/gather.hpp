@@ -1,5 +1,5 @@
-// Light that reaches the camera: emitters seen directly, light that falls straight from the lights onto what is seen, and
-// the density estimate over the photon maps.
+// Light that reaches the camera: emitters seen directly, light that falls straight from the lights onto what is seen,
+// and the density estimate over the photon maps.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,8 @@ struct GatherScene {
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
     Buffer<Flux16> spectra;  // row i: reflectance of material i at the pass's wavelengths
-    Buffer<Flux16> emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]; beams: PassBuffers::radiance
+    Buffer<Flux16>
+        emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]; beams: PassBuffers::radiance
     DeviceTextures textures;
 };
 
@@ -37,7 +38,8 @@ class Gather {
     Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera);
 
     // Finds the points that the camera rays see, and adds the light of emitters among them to the surface layer.
-    // rays, hits: one per pixel, as CameraView makes and trace_closest_all or trace_seen find them. Asynchronous.
+    // rays, hits: one per pixel, as CameraView makes and trace_closest_all or trace_reflections find them.
+    // Asynchronous.
     void collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
                         const Buffer<Hit>& hits, const Buffer<FilmValue>& film);
 
@@ -64,8 +66,8 @@ class Gather {
     // Without it each weighs one, or the exit_scale of its material. Asynchronous.
     void measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm);
 
-    // Adds the light of one map (STOKES_MAP_*) at the points of one radius class to the film's layer of the same number.
-    // photons: hashed for that many times the radius of the pass. Asynchronous.
+    // Adds the light of one map (STOKES_MAP_*) at the points of one radius class to the film's layer of the same
+    // number. photons: hashed for that many times the radius of the pass. Asynchronous.
     void add_map(std::uint32_t map, float radius_class, const SpatialHash& photons, const GatherScene& scene,
                  const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film);
 

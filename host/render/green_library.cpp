@@ -16,9 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kCachedWalks = 300000;
 
-std::string table_name(double eta) {
-    return fmt::format("green-{}.json.gz", eta);
-}
+std::string table_name(double eta) { return fmt::format("green-{}.json.gz", eta); }
 
 // Empty where neither XDG_CACHE_HOME nor HOME names an absolute folder.
 fs::path cache_folder() {
@@ -63,8 +61,9 @@ GreenTable green_table_for(const Device& device, double eta, const GreenProgress
     const fs::path folder = cache_folder(), file = folder / table_name(eta);
     GreenTable table;
     if (!folder.empty() && read_cached(file, eta, table)) return table;
-    warn(fmt::format("no Green's function table for the refractive index {} yet: computing it, which takes a minute or two{}",
-                     eta, folder.empty() ? "" : ", once: it is kept in " + folder.string()));
+    warn(fmt::format(
+        "no Green's function table for the refractive index {} yet: computing it, which takes a minute or two{}", eta,
+        folder.empty() ? "" : ", once: it is kept in " + folder.string()));
     table = make_green_table(device, eta, kCachedWalks, progress);
     if (!folder.empty()) write_cached(table, file);
     return table;

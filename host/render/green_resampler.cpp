@@ -50,8 +50,8 @@ std::vector<double> row_depths(const TableShape& shape) {
     return depth;
 }
 
-// The straight lines that the kernels draw between rows lie below the probability of leaving scattered where it is concave
-// over depth, near the surface, and above it where it is convex. Each value is moved by a twelfth of the second
+// The straight lines that the kernels draw between rows lie below the probability of leaving scattered where it is
+// concave over depth, near the surface, and above it where it is convex. Each value is moved by a twelfth of the second
 // difference, so that every stretch of two rows holds what it should; deep down, where hardly any light comes from and
 // the rows are too far apart for that, it stays.
 constexpr double most_bend = 0.003;  // of a value
@@ -71,15 +71,12 @@ void bend_to_straight_lines(const std::vector<double>& depth, std::vector<Flux16
 
 }  // namespace
 
-TableShape green_medium_shape(const GreenTable& table, double sigma_t_min, double sigma_t_max,
-                              std::size_t offset) {
+TableShape green_medium_shape(const GreenTable& table, double sigma_t_min, double sigma_t_max, std::size_t offset) {
     if (!(sigma_t_min > 0.0 && sigma_t_max >= sigma_t_min && std::isfinite(sigma_t_max)))
-        throw InputError(
-            fmt::format("extinction coefficients from {} to {} per mm: expected positive numbers",
-                        sigma_t_min, sigma_t_max));
+        throw InputError(fmt::format("extinction coefficients from {} to {} per mm: expected positive numbers",
+                                     sigma_t_min, sigma_t_max));
     const auto octaves = [&](const std::vector<double>& axis, std::size_t nodes) {
-        return std::log2(axis.back() / sigma_t_min / (axis[1] / sigma_t_max)) /
-               static_cast<double>(nodes - 2);
+        return std::log2(axis.back() / sigma_t_min / (axis[1] / sigma_t_max)) / static_cast<double>(nodes - 2);
     };
     TableShape shape{};
     shape.offset = static_cast<unsigned>(offset);
@@ -114,8 +111,7 @@ std::vector<Flux16> GreenResampler::exact_totals(const TableShape& shape, const 
     std::vector<Flux16> u1(depth.size());
     for (std::size_t row = 0; row < u1.size(); ++row)
         for (std::size_t j = 0; j < STOKES_WAVELENGTHS; ++j)
-            u1[row].v[j] =
-                sigma_t[j] > 0.0 ? static_cast<float>(totals_.at(sigma_t[j] * depth[row], albedo[j])) : 0.0f;
+            u1[row].v[j] = sigma_t[j] > 0.0 ? static_cast<float>(totals_.at(sigma_t[j] * depth[row], albedo[j])) : 0.0f;
     return u1;
 }
 
@@ -126,8 +122,8 @@ void GreenResampler::resample(const TableShape& shape, std::size_t first_row, co
     for (const double a : albedo) {
         const double root = std::sqrt(1.0 - a);
         const auto above = std::lower_bound(root_.begin(), root_.end(), root, std::greater<double>());
-        const auto i = std::clamp<std::ptrdiff_t>(above - root_.begin() - 1, 0,
-                                                  static_cast<std::ptrdiff_t>(root_.size()) - 2);
+        const auto i =
+            std::clamp<std::ptrdiff_t>(above - root_.begin() - 1, 0, static_cast<std::ptrdiff_t>(root_.size()) - 2);
         lower.push_back(static_cast<std::uint32_t>(i));
         fraction.push_back(static_cast<float>((root_[i] - root) / (root_[i] - root_[i + 1])));
     }
@@ -140,8 +136,8 @@ void GreenResampler::resample(const TableShape& shape, std::size_t first_row, co
     blend_.launch(blended_.size(), universal_, log_h_, lower_, fraction_, blended_);
     resample_.launch(std::size_t{shape.row_count} * shape.r_count, universal_, shape, blended_, sigma_t_,
                      tables.table16);
-    normalise_.launch(shape.row_count, shape, static_cast<std::uint32_t>(first_row), tables.u1,
-                      tables.table16, tables.mean_rows, tables.cumulative_rows);
+    normalise_.launch(shape.row_count, shape, static_cast<std::uint32_t>(first_row), tables.u1, tables.table16,
+                      tables.mean_rows, tables.cumulative_rows);
 }
 
 }  // namespace stokes

@@ -18,8 +18,7 @@ namespace stokes {
 // between sigma_t_min and sigma_t_max [1/mm], 0 < sigma_t_min <= sigma_t_max: rows are depths, entries
 // lateral distances. offset: the table's first entry in its buffers. Throws InputError for other
 // coefficients.
-TableShape green_medium_shape(const GreenTable& table, double sigma_t_min, double sigma_t_max,
-                              std::size_t offset = 0);
+TableShape green_medium_shape(const GreenTable& table, double sigma_t_min, double sigma_t_max, std::size_t offset = 0);
 
 // What a pass reads. A medium's entries start at its shape's offset, its rows at first_row.
 struct GreenPassTables {
@@ -37,8 +36,8 @@ class GreenResampler {
     GreenResampler(const Device& device, const GreenTable& table);
 
     // sigma_t [1/mm], not negative (0: nothing leaves), albedo in [0, 1].
-    void resample(const TableShape& shape, std::size_t first_row, const Sixteen& sigma_t,
-                  const Sixteen& albedo, const GreenPassTables& tables);
+    void resample(const TableShape& shape, std::size_t first_row, const Sixteen& sigma_t, const Sixteen& albedo,
+                  const GreenPassTables& tables);
 
   private:
     std::vector<Flux16> exact_totals(const TableShape& shape, const Sixteen& sigma_t, const Sixteen& albedo) const;

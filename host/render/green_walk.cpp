@@ -26,9 +26,7 @@ struct DeepEscape {
 
     DeepEscape(double eta, const std::vector<double>& albedos) {
         const HalfSpaceEscape solver(eta, {kDeep});
-        const auto amplitude = [&](double a) {
-            return solver.total(a)[0] * std::exp(diffusion_decay(a) * kDeep);
-        };
+        const auto amplitude = [&](double a) { return solver.total(a)[0] * std::exp(diffusion_decay(a) * kDeep); };
         // -log(amplitude) = kappa z_e - kappa^2 spread^2 / 2 + ..: the mean and variance of the height above
         // the surface at which light of long diffusion length seems to be absorbed.
         const double near = 0.9999, far = 0.999;
@@ -61,9 +59,7 @@ std::uint64_t walks_from(double z, std::uint64_t walks) {
 void fill_row(GreenTable& table, std::size_t z, std::size_t a, const std::vector<double>& escape) {
     const std::size_t nodes = table.rho.size();
     const double width = octaves_per_node(table.rho) * std::log(2.0);
-    const auto mass = [&](std::size_t bin) {
-        return bin >= 1 && bin < nodes ? escape[bin * kAlbedos + a] : 0.0;
-    };
+    const auto mass = [&](std::size_t bin) { return bin >= 1 && bin < nodes ? escape[bin * kAlbedos + a] : 0.0; };
     float* h = &table.h1[table.row(a, z)];
     h[0] = 0.0f;
     for (std::size_t i = 1; i < nodes; ++i) {
@@ -77,8 +73,7 @@ void fill_row(GreenTable& table, std::size_t z, std::size_t a, const std::vector
     while (last + 1 < nodes && table.rho[last + 1] < flat * table.z[z]) inside += mass(++last);
     if (last == 0) return;
     const double edge = table.rho[last] * std::exp(0.5 * width);
-    for (std::size_t i = 1; i <= last; ++i)
-        h[i] = static_cast<float>(2.0 * table.rho[i] * inside / (edge * edge));
+    for (std::size_t i = 1; i <= last; ++i) h[i] = static_cast<float>(2.0 * table.rho[i] * inside / (edge * edge));
 }
 
 }  // namespace
@@ -152,8 +147,7 @@ GreenScores GreenWalker::walk(double source_depth, std::uint32_t stream, std::ui
     return scores;
 }
 
-GreenTable make_green_table(const Device& device, double eta, std::uint64_t walks,
-                            const GreenProgress& progress) {
+GreenTable make_green_table(const Device& device, double eta, std::uint64_t walks, const GreenProgress& progress) {
     if (walks == 0 || walks > 0xffff0000u)
         throw InputError(fmt::format("{} walks: expected a number from 1 to {}", walks, 0xffff0000u));
     GreenTable table = green_table_nodes(eta);

@@ -41,8 +41,7 @@ using GreenProgress = std::function<void(double share)>;
 
 // The table for a refractive index in [1, 4]: shape from the walks, that many from each depth near the
 // surface and fewer from the deep, totals exact. Throws InputError for eta out of range or no walks.
-GreenTable make_green_table(const Device& device, double eta, std::uint64_t walks,
-                            const GreenProgress& progress = {});
+GreenTable make_green_table(const Device& device, double eta, std::uint64_t walks, const GreenProgress& progress = {});
 
 // The table that comes with the program, where there is one for this eta; else the cached one,
 // ${XDG_CACHE_HOME:-$HOME/.cache}/stokes/green-ETA.json.gz, which is made when it is not there or cannot be

@@ -17,9 +17,10 @@ double Balance::imbalance() const {
 void warn_about(const Ledger& ledger) {
     const Balance& power = ledger.power;
     if (power.created > 0.01 * power.emitted)
-        warn(fmt::format("{:.3g} times the emitted light was created, by power tables above one or by fluorophores that emit "
-                         "more than they take up",
-                         power.created / power.emitted));
+        warn(fmt::format(
+            "{:.3g} times the emitted light was created, by power tables above one or by fluorophores that emit "
+            "more than they take up",
+            power.created / power.emitted));
     for (const double imbalance : {power.imbalance(), ledger.photons.imbalance()})
         if (!(std::abs(imbalance) < 1e-4)) {
             warn(fmt::format("the account of the light does not close: imbalance {:.2g}", imbalance));

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "host/subsurface/paper_transport.hpp"
-
 #include "host/render/wavelength_importance.hpp"
+#include "host/subsurface/paper_transport.hpp"
 
 namespace stokes {
 
@@ -50,7 +49,7 @@ void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std
     spectra_ = make_pass_spectra(scene_, on_device_.light_probability, on_device_.light_surface_area_mm2, wavelengths,
                                  pass, photons);
     spectra_.constants.offset_mm = on_device_.offset_mm;
-    spectra_.constants.even_exits = buffers_.cell_count > 0 ? 1u : 0u;
+    spectra_.constants.low_discrepancy_exits = buffers_.cell_count > 0 ? 1u : 0u;
     buffers_.constants.upload(&spectra_.constants, 1);
     buffers_.rows.upload(spectra_.rows);
     buffers_.photon_flux.upload(spectra_.photon_flux);
@@ -85,7 +84,7 @@ void PassMaker::sample_media() {
 void PassMaker::resample_tables() {
     const DeviceTables& tables = on_device_.tables;
     if (tables.values.size() > 0) {
-        const EvenAxis& lambda = tables.wavelengths;
+        const UniformAxis& lambda = tables.wavelengths;
         wavelengths_.upload(spectra_.constants.lambda_nm, STOKES_WAVELENGTHS);
         resample_.launch(tables.entries, tables.values, static_cast<std::uint32_t>(lambda.count),
                          static_cast<float>(lambda.first), static_cast<float>(lambda.step), wavelengths_,

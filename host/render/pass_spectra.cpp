@@ -55,7 +55,7 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
         constants.chain[i] = static_cast<float>(wavelengths.chain[i]);
         constants.strata[i] = wavelengths.strata[i];
     }
-    constants.even_pixels = render.sampling == Sampling::plain ? 0 : 1;
+    constants.low_discrepancy_pixels = render.sampling == Sampling::plain ? 0 : 1;
     constants.stratified = wavelengths.stratified ? 1 : 0;
     for (std::size_t i = 0; i < level_shares.size(); ++i)
         constants.level_shares[i] = static_cast<float>(level_shares[i]);
@@ -73,10 +73,8 @@ SpectraLayout::SpectraLayout(const Scene& scene)
     : materials(static_cast<std::uint32_t>(scene.materials.size())),
       fluorophores(static_cast<std::uint32_t>(scene.fluorophores.size())),
       media(static_cast<std::uint32_t>(scene.media.size())),
-      textures(
-          static_cast<std::uint32_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
-                                                   [](const Material& m) { return m.texture != nullptr; }))) {
-}
+      textures(static_cast<std::uint32_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
+                                                        [](const Material& m) { return m.texture != nullptr; }))) {}
 
 // Given k wavelengths of a path in the set, the next is in it with probability (n - k)/(N - k).
 PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass) {
@@ -120,10 +118,10 @@ std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluor
     for (std::size_t ex = 0; ex < set.size(); ++ex)
         for (std::size_t em = 0; em < set.size(); ++em) {
             if (set[em] <= set[ex]) continue;
-            const double emitted = transport == Transport::paper
-                                       ? fluorophore.conversion * fluorophore.emission.at(set[em])
-                                       : fluorophore.quantum_yield * fluorophore.emission.at(set[em]) / sum *
-                                             set[ex] / set[em];
+            const double emitted =
+                transport == Transport::paper
+                    ? fluorophore.conversion * fluorophore.emission.at(set[em])
+                    : fluorophore.quantum_yield * fluorophore.emission.at(set[em]) / sum * set[ex] / set[em];
             rows[ex].v[em] =
                 static_cast<float>(emitted * fluorophore.excitation.at(set[ex]) * wavelengths.weight_nm(ex, em));
         }

@@ -17,15 +17,15 @@ namespace stokes {
 // [1/mm] and albedo of each medium; then the white reflectance of each material that has a texture.
 struct SpectraLayout {
     explicit SpectraLayout(const Scene& scene);
-    std::uint32_t excitation_row(int fluorophore) const { return materials + static_cast<std::uint32_t>(fluorophore) * 17; }
+    std::uint32_t excitation_row(int fluorophore) const {
+        return materials + static_cast<std::uint32_t>(fluorophore) * 17;
+    }
     std::uint32_t reradiation_row(int fluorophore) const { return excitation_row(fluorophore) + 1; }
     std::uint32_t sigma_row(int medium) const {
         return materials + fluorophores * 17 + static_cast<std::uint32_t>(medium) * 2;
     }
     // texture: number of the material among those with a texture.
-    std::uint32_t white_row(std::uint32_t texture) const {
-        return materials + fluorophores * 17 + media * 2 + texture;
-    }
+    std::uint32_t white_row(std::uint32_t texture) const { return materials + fluorophores * 17 + media * 2 + texture; }
     std::uint32_t row_count() const { return white_row(textures); }
     std::uint32_t materials, fluorophores, media, textures;
 };
@@ -34,8 +34,8 @@ struct SpectraLayout {
 PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass);
 
 struct PassSpectra {
-    PassConstants constants;           // all but offset_mm
-    std::vector<Flux16> rows;          // SpectraLayout::row_count() rows
+    PassConstants constants;   // all but offset_mm
+    std::vector<Flux16> rows;  // SpectraLayout::row_count() rows
     // Per light, times the wavelengths' rarity: flux of one photon [W/nm], all lights' probabilities included, and
     // radiance of its surface [W mm^-2 sr^-1 nm^-1], for beams the irradiance across them [W mm^-2 nm^-1].
     std::vector<Flux16> photon_flux, radiance;

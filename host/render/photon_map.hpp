@@ -28,8 +28,8 @@ class PhotonMap {
 
     // From now on, or no longer, remembers which path each slot belongs to.
     void track_paths(bool on);
-    // The count events of this list of paths will store at the next slots, exits each. Nothing where paths are not tracked.
-    // Asynchronous.
+    // The count events of this list of paths will store at the next slots, exits each. Nothing where paths are not
+    // tracked. Asynchronous.
     void note_paths(const Buffer<std::uint32_t>& list, std::uint32_t count, std::uint32_t exits);
     const Buffer<std::uint32_t>& paths() const { return paths_; }  // by slot
 

@@ -117,9 +117,8 @@ void PhotonTracer::scatter_at_surfaces(const DeviceScene& scene, const PassBuffe
     round.first_slot = map.used();
     round.slot_limit = slots > 0 ? map.capacity() : 0;
     map.note_paths(diffuse_, slots, 1);
-    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows,
-                    scene.textures.records, scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_,
-                    map.heads(), map.flux());
+    scatter_.launch(round.count, round, pass.constants, diffuse_, points_, hits_, pass.rows, scene.textures.records,
+                    scene.textures.texels, scene.textures.uv, rays_, flux_, ledgers_, map.heads(), map.flux());
     deposits_ += slots;
     refused_slots_ += map.advance(slots);
 }
@@ -250,8 +249,9 @@ void PhotonTracer::walk_below_surfaces(const DeviceScene& scene, const PassBuffe
         slots.limit[m] = maps[m].capacity();
     }
     walk_->launch(round.count, round, slots, pass.constants, elastic_, points_, scene.bodies, scene.rays.nodes,
-                  scene.rays.blocks, scene.rays.grid, scene.triangles, scene.materials, pass.rows, rays_, flux_, ledgers_, maps[0].heads(),
-                  maps[0].flux(), maps[1].heads(), maps[1].flux(), maps[2].heads(), maps[2].flux());
+                  scene.rays.blocks, scene.rays.grid, scene.triangles, scene.materials, pass.rows, rays_, flux_,
+                  ledgers_, maps[0].heads(), maps[0].flux(), maps[1].heads(), maps[1].flux(), maps[2].heads(),
+                  maps[2].flux());
     deposits_ += round.count;
     std::uint32_t refused = 0;  // the maps are of one size and grow together; a path is in one of them
     for (std::uint32_t m = 0; m < 3; ++m) refused = std::max(refused, maps[m].advance(round.count));

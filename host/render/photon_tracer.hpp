@@ -23,7 +23,7 @@ struct PassBuffers {
     bool both_branches = false;  // light below a surface goes both ways, by fluorophore and past it: chosen_branches()
     std::uint32_t exits = 1;     // of an event and component
     bool weighted_distances = false;  // `paper`: chosen_distances()
-    bool store_direct = true;    // false: photons straight from a light are not stored at diffuse surfaces
+    bool store_direct = true;         // false: photons straight from a light are not stored at diffuse surfaces
     // Where photons start; without cells anywhere on the lights, at random.
     std::uint32_t cell_count = 0;
     Buffer<EmissionCell> cells = {};
@@ -37,11 +37,11 @@ using PhotonMaps = std::array<PhotonMap, STOKES_MAP_COUNT>;  // by STOKES_MAP_*
 struct PhotonAccount {
     std::array<double, 8> energy{}, photons{};
     std::array<std::uint64_t, STOKES_FATE_COUNT> fates{};  // paths by STOKES_FATE_*
-    std::uint64_t rays = 0;           // photon rays and probes
-    std::uint64_t missed_exits = 0;   // deposits whose exit point found no surface
-    std::uint64_t refused_slots = 0;  // deposits a full map had no slot for
-    std::uint64_t deposits = 0;       // stored or refused, missed exits included
-    std::uint64_t reflections = 0;    // specular
+    std::uint64_t rays = 0;                                // photon rays and probes
+    std::uint64_t missed_exits = 0;                        // deposits whose exit point found no surface
+    std::uint64_t refused_slots = 0;                       // deposits a full map had no slot for
+    std::uint64_t deposits = 0;                            // stored or refused, missed exits included
+    std::uint64_t reflections = 0;                         // specular
 };
 
 class PhotonTracer {
@@ -55,8 +55,7 @@ class PhotonTracer {
   private:
     void emit(const DeviceScene& scene, const PassBuffers& pass, std::uint32_t photons);
     ListCounts make_lists(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round);
-    void scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round,
-                             PhotonMap& map);
+    void scatter_at_surfaces(const DeviceScene& scene, const PassBuffers& pass, EventRound round, PhotonMap& map);
     void scatter_below_surfaces(const DeviceScene& scene, const PassBuffers& pass, const EventRound& round,
                                 const ListCounts& lists, PhotonMaps& maps);
     void reserve_exits(std::uint32_t count);
@@ -70,14 +69,15 @@ class PhotonTracer {
 
     Device device_;
     Kernel emit_, emit_stratified_, trace_, trace_probe_, classify_, count_, scan_, write_, scatter_;
-    Kernel sample_exits_, place_exits_, deposit_, retrace_fluorescence_, retrace_elastic_, retrace_exits_, fold_exits_, sum_;
+    Kernel sample_exits_, place_exits_, deposit_, retrace_fluorescence_, retrace_elastic_, retrace_exits_, fold_exits_,
+        sum_;
     std::optional<Kernel> walk_, draw_exits_, integrate_;  // compiled when they are first needed
     Buffer<Ray> rays_;
     Buffer<Hit> hits_;
     Buffer<Flux16> flux_;
     Buffer<PathLedger> ledgers_;
     Buffer<SurfacePoint> points_;
-    Buffer<EventWords> event_words_;
+    Buffer<EventSample> event_words_;
     Buffer<std::uint32_t> alive_, next_alive_, diffuse_, fluorescence_, elastic_, branches_;
     Buffer<std::uint8_t> kinds_;
     Buffer<ListCounts> chunk_counts_, totals_;

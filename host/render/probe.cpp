@@ -23,9 +23,7 @@ void check(const ProbeMaterial& material, const ProbeSettings& s) {
     const auto expect = [](bool good, const char* what) {
         if (!good) throw InputError(fmt::format("probe: expected {}", what));
     };
-    const auto covered = [](int lambda) {
-        return lambda >= first_probe_lambda_nm && lambda <= last_probe_lambda_nm;
-    };
+    const auto covered = [](int lambda) { return lambda >= first_probe_lambda_nm && lambda <= last_probe_lambda_nm; };
     expect(material.medium || material.fluorophore, "a medium, a fluorophore or both");
     expect(s.angle_deg >= 0.0 && s.angle_deg <= 89.9, "an angle of incidence in [0, 89.9] deg");
     expect(s.photons >= least_probe_photons && s.photons <= 1000000000000, "photons in [64, 1e12]");
@@ -34,8 +32,7 @@ void check(const ProbeMaterial& material, const ProbeSettings& s) {
            "a range of at least 16 whole nanometres within [300, 830] nm");
     expect(s.step_nm >= 1 && s.step_nm <= 50, "a step in [1, 50] nm");
     expect(s.bins >= 2 && s.bins <= 10000, "from 2 to 10000 bins");
-    expect(!s.r_max_mm || (*s.r_max_mm >= 1e-9 && *s.r_max_mm <= 1e12),
-           "a largest distance in [1e-9, 1e12] mm");
+    expect(!s.r_max_mm || (*s.r_max_mm >= 1e-9 && *s.r_max_mm <= 1e12), "a largest distance in [1e-9, 1e12] mm");
     expect(!s.first_collision_only || s.transport == Transport::walk,
            "fluorescence at the first collision only with the transport walk; it is what the others do");
 }
@@ -70,9 +67,7 @@ class BatchMeans {
             squares_[i] += before * (batch[i] - mean_[i]);
         }
     }
-    Measured at(std::size_t i) const {
-        return {mean_[i], std::sqrt(squares_[i] / (count_ * (count_ - 1.0)))};
-    }
+    Measured at(std::size_t i) const { return {mean_[i], std::sqrt(squares_[i] / (count_ * (count_ - 1.0)))}; }
 
   private:
     double count_ = 0.0;
@@ -97,8 +92,7 @@ struct HalfSpaceProbe::Bench {
         on_device.bodies.upload({STOKES_BODY_FLAT});
         // Far below the mean free paths, so that it matters nowhere.
         on_device.offset_mm = static_cast<float>(1e-3 * mean_free_paths(material).shortest_mm);
-        for (int lambda = s.lambda_min_nm; lambda <= s.lambda_max_nm; lambda += s.step_nm)
-            grid_nm.push_back(lambda);
+        for (int lambda = s.lambda_min_nm; lambda <= s.lambda_max_nm; lambda += s.step_nm) grid_nm.push_back(lambda);
     }
 
     ProbeGrid probe_grid(int lambda_ex_nm) const;
@@ -137,8 +131,7 @@ ProbeGrid HalfSpaceProbe::Bench::probe_grid(int lambda_ex_nm) const {
     const bool again = fluoresces && settings.transport == Transport::walk && !settings.first_collision_only;
     for (int lambda = first_probe_lambda_nm; lambda <= last_probe_lambda_nm; ++lambda) {
         const bool inert = !again || !emits(lambda) || grid.emitting.empty() || lambda > grid.emitting.back();
-        if (lambda != lambda_ex_nm && inert &&
-            !std::binary_search(grid.emitting.begin(), grid.emitting.end(), lambda))
+        if (lambda != lambda_ex_nm && inert && !std::binary_search(grid.emitting.begin(), grid.emitting.end(), lambda))
             grid.spare.push_back(lambda);
     }
     // The nearest have the most similar mean free paths, which keeps weights near one.
@@ -159,8 +152,7 @@ std::vector<double> HalfSpaceProbe::Bench::bin_edges(const ProbeGrid& grid) cons
         first = 0.01 / sigma_t(grid.lambda_ex_nm);
         last = 0.0;
         for (const int lambda : seen) {
-            const double decay =
-                diffusion_decay(std::min(material.medium->sigma_s.at(lambda) / sigma_t(lambda), 1.0));
+            const double decay = diffusion_decay(std::min(material.medium->sigma_s.at(lambda) / sigma_t(lambda), 1.0));
             last = std::max(last, std::min(1000.0, 20.0 / decay) / sigma_t(lambda));
         }
     }
@@ -204,30 +196,26 @@ void HalfSpaceProbe::Bench::add_set(const ProbeSet& set, const ProbeResult& resu
             }
             const double r_mm = std::hypot(static_cast<double>(heads[i].x), static_cast<double>(heads[i].z));
             const auto above = std::upper_bound(result.r_mm.begin(), result.r_mm.end(), r_mm);
-            sums[layout.in_bin(component, static_cast<std::size_t>(above - result.r_mm.begin()) - 1)] +=
-                leaving;
+            sums[layout.in_bin(component, static_cast<std::size_t>(above - result.r_mm.begin()) - 1)] += leaving;
             sums[layout.total(component)] += leaving;
         }
     }
 }
 
-HalfSpaceProbe::HalfSpaceProbe(const Device& device, const ProbeMaterial& material,
-                               const ProbeSettings& settings) {
+HalfSpaceProbe::HalfSpaceProbe(const Device& device, const ProbeMaterial& material, const ProbeSettings& settings) {
     check(material, settings);
     bench_ = std::make_unique<Bench>(device, material, settings);
 }
 
 HalfSpaceProbe::~HalfSpaceProbe() = default;
 
-const std::vector<int>& HalfSpaceProbe::grid_nm() const {
-    return bench_->grid_nm;
-}
+const std::vector<int>& HalfSpaceProbe::grid_nm() const { return bench_->grid_nm; }
 
 namespace {
 
 // The sum of a batch's components, and what was reflected where it arrived.
-void finish_batch(const Layout& layout, std::size_t wavelengths, std::size_t bins, std::size_t ex,
-                  double reflected, std::vector<double>& sums) {
+void finish_batch(const Layout& layout, std::size_t wavelengths, std::size_t bins, std::size_t ex, double reflected,
+                  std::vector<double>& sums) {
     sums[layout.at_wavelength(probe_specular, ex)] = sums[layout.total(probe_specular)] = reflected;
     for (std::size_t component = 0; component < probe_total; ++component) {
         for (std::size_t i = 0; i < wavelengths; ++i)
@@ -276,8 +264,7 @@ ProbeResult HalfSpaceProbe::measure(int lambda_ex_nm) {
     const Layout layout(grid.lambda_nm.size(), bins);
     BatchMeans means(layout.size());
     const auto ex = static_cast<std::size_t>(
-        std::lower_bound(grid.lambda_nm.begin(), grid.lambda_nm.end(), lambda_ex_nm) -
-        grid.lambda_nm.begin());
+        std::lower_bound(grid.lambda_nm.begin(), grid.lambda_nm.end(), lambda_ex_nm) - grid.lambda_nm.begin());
     double dropped = 0.0, arrived = 0.0;
     std::uint32_t index = 0;
     for (std::int64_t batch = 0; batch < b.batches; ++batch) {

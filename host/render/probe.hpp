@@ -36,20 +36,14 @@ struct ProbeSettings {
     int lambda_min_nm = 300, lambda_max_nm = 780;  // in [300, 830]
     int step_nm = 5;                               // in [1, 50]
     int bins = 40;                                 // of distance, in [2, 10000]
-    std::optional<double> r_max_mm;  // end of the last of them, in [1e-9, 1e12]; none: from the material
+    std::optional<double> r_max_mm;                // end of the last of them, in [1e-9, 1e12]; none: from the material
 };
 
 inline constexpr std::int64_t least_probe_photons = 64;
 
 // What leaves, as ProbeResult's arrays have it. specular: reflected where it arrives; total: all the others
 // together.
-enum ProbeComponent : std::size_t {
-    probe_specular,
-    probe_single,
-    probe_multiple,
-    probe_fluorescence,
-    probe_total
-};
+enum ProbeComponent : std::size_t { probe_specular, probe_single, probe_multiple, probe_fluorescence, probe_total };
 inline constexpr std::size_t probe_component_count = 5;
 
 struct Measured {
@@ -71,8 +65,7 @@ struct ProbeResult {
     std::vector<double> r_mm;
     // [component][bin]: totals by where it leaves, exitance [1/mm^2]. Nothing of it is specular.
     std::array<std::vector<Measured>, probe_component_count> radial;
-    std::array<Measured, probe_component_count>
-        beyond;                // share of the energy that leaves beyond the last edge
+    std::array<Measured, probe_component_count> beyond;  // share of the energy that leaves beyond the last edge
     std::int64_t photons = 0;  // simulated for each set: those asked for, rounded up to whole batches
     std::size_t sets = 0;      // of sixteen wavelengths
     std::size_t batches = 0;   // of which the standard errors are those of the means

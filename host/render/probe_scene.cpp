@@ -42,8 +42,7 @@ FreePaths mean_free_paths(const ProbeMaterial& material) {
     if (!material.medium) return {};
     FreePaths result{std::numeric_limits<double>::infinity(), 0.0};
     for (int lambda = first_probe_lambda_nm; lambda <= last_probe_lambda_nm; ++lambda) {
-        const double mfp_mm =
-            1.0 / (material.medium->sigma_s.at(lambda) + material.medium->sigma_a.at(lambda));
+        const double mfp_mm = 1.0 / (material.medium->sigma_s.at(lambda) + material.medium->sigma_a.at(lambda));
         result.shortest_mm = std::min(result.shortest_mm, mfp_mm);
         result.longest_mm = std::max(result.longest_mm, mfp_mm);
     }
@@ -118,8 +117,8 @@ ProbeMaterial probe_material(const Scene& scene, const std::string& name) {
         result.fresnel = material.fresnel;
         return result;
     }
-    throw InputError(fmt::format("{}: no material \"{}\"; translucent are: {}", scene.file, name,
-                                 names.empty() ? "none" : names));
+    throw InputError(
+        fmt::format("{}: no material \"{}\"; translucent are: {}", scene.file, name, names.empty() ? "none" : names));
 }
 
 }  // namespace stokes

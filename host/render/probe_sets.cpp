@@ -31,14 +31,13 @@ ProbeSet make_set(const ProbeGrid& grid, const std::vector<int>& order, std::siz
     result.wavelengths.chain = chain_weights(grid);
     std::vector<int> members{grid.lambda_ex_nm};
     members.insert(members.end(), order.begin() + first, order.begin() + last);
-    for (std::size_t i = 0; i < first && members.size() < STOKES_WAVELENGTHS; ++i)
-        members.push_back(order[i]);
+    for (std::size_t i = 0; i < first && members.size() < STOKES_WAVELENGTHS; ++i) members.push_back(order[i]);
     for (std::size_t i = 0; i < grid.spare.size() && members.size() < STOKES_WAVELENGTHS; ++i)
         members.push_back(grid.spare[i]);
     if (members.size() < STOKES_WAVELENGTHS)
         throw InputError("a measurement at " + std::to_string(grid.lambda_ex_nm) + " nm: expected at least " +
-                         std::to_string(STOKES_WAVELENGTHS) + " wavelengths, got " +
-                         std::to_string(members.size()) + "; a smaller step or a wider range has more");
+                         std::to_string(STOKES_WAVELENGTHS) + " wavelengths, got " + std::to_string(members.size()) +
+                         "; a smaller step or a wider range has more");
     std::sort(members.begin(), members.end());
     std::copy(members.begin(), members.end(), result.wavelengths.set.begin());
     const auto place = [](const std::vector<int>& list, int lambda) {
@@ -70,8 +69,8 @@ std::vector<ProbeSet> probe_sets(const ProbeGrid& grid, std::uint32_t seed, std:
         std::swap(order[i], order[i + uniform_below(generator, order.size() - i)]);
     std::vector<ProbeSet> sets;
     for (std::size_t first = 0; sets.size() < probe_set_count(grid); first += read_per_set)
-        sets.push_back(make_set(grid, order, std::min(first, order.size()),
-                                std::min(first + read_per_set, order.size())));
+        sets.push_back(
+            make_set(grid, order, std::min(first, order.size()), std::min(first + read_per_set, order.size())));
     return sets;
 }
 

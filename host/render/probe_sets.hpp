@@ -17,7 +17,7 @@ struct ProbeGrid {
     std::vector<int> lambda_nm;  // to be read, increasing; lambda_ex_nm among them
     std::vector<int> emitting;   // those of them that can fluoresce, all above lambda_ex_nm; increasing
     std::vector<int> spare;      // others, to fill a set with: where several re-radiations follow each other,
-                             // none of them may be reached and then emit at one of emitting. The best first
+                                 // none of them may be reached and then emit at one of emitting. The best first
 };
 
 struct ProbeSet {

@@ -5,7 +5,8 @@ namespace stokes {
 // Nodes of sixteen children pay where one vector holds a bound of all of them.
 BvhLayout ray_layout(const Device& device) {
     const RayShape shape = device.ray_shape();
-    const bool wide = shape == RayShape::avx512 || (shape == RayShape::portable && device.description().vector_floats >= 16);
+    const bool wide =
+        shape == RayShape::avx512 || (shape == RayShape::portable && device.description().vector_floats >= 16);
     return {wide ? 16 : 8, BvhBounds::automatic};
 }
 

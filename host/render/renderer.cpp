@@ -23,7 +23,7 @@ constexpr std::uint32_t least_trials = 4, most_trials = 32;
 constexpr std::uint32_t all_trial_photons = 1u << 20, most_trial_photons = all_trial_photons / least_trials;
 
 // Share of the photons that start evenly spread in the trials' second half, and in the render.
-constexpr double even_share_of_trials = 0.3, even_share = 0.15;
+constexpr double even_share_of_trials = 0.3, uniform_share = 0.15;
 
 // The partition of the lights is no finer than this, nor than so many photons of a pass to a cell.
 constexpr std::uint32_t most_cells = 1024, photons_per_cell = 64;
@@ -59,7 +59,8 @@ Renderer::Renderer(const Device& device, const Scene& scene)
             std::vector<FilmValue>(std::size_t{STOKES_MAP_COUNT} * view_.ray_count(), FilmValue{0, 0, 0, 0})) {
     const RayKernels& kernels = on_device_.rays.kernels;
     trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
-    if (on_device_.has_fresnel) trace_seen_ = kernels.program(device, "see_surfaces.cl").kernel("trace_seen");
+    if (on_device_.has_fresnel)
+        trace_seen_ = kernels.program(device, "trace_reflections.cl").kernel("trace_reflections");
     const std::clock_t start = std::clock();
     set_up_passes();
     device_.finish();
@@ -88,14 +89,14 @@ void Renderer::set_up_passes() {
     }
     first_radius_mm_ = render.radius_mm.value_or(found_mm);
     if (chosen_emission(render) == Emission::stratified)
-        pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_), photons_));
+        pass_.set_emission(EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
     if (chosen_emission(render) == Emission::aimed) {
         try {
             pass_.set_emission(aimed_cells());
         } catch (const InputError& error) {  // no memory for the trials
             for (PhotonMap& map : maps_) map.track_paths(false);
             warn(std::string("photons are spread evenly in place of aimed: ") + error.what());
-            pass_.set_emission(EmissionCells::even(emitting_lights(scene_, on_device_), photons_));
+            pass_.set_emission(EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
         }
     }
     if (!local) return;
@@ -124,7 +125,7 @@ void Renderer::make_trial_photons(bool as_plain) {
 // The camera sees the whole picture: a crop has its radius.
 double Renderer::find_first_radius() {
     const CameraRecord whole = make_whole_record(scene_.camera, scene_.film.width, scene_.film.height);
-    see_points(whole);
+    find_visible_points(whole);
     std::vector<PhotonHead> photons;
     for (const PhotonMap& map : maps_)
         for (const PhotonHead& head : map.heads().download(map.used())) photons.push_back(head);
@@ -139,13 +140,15 @@ EmissionCells Renderer::aimed_cells() {
     const RenderSettings& render = scene_.render;
     const std::uint32_t photons = std::min(photons_, most_trial_photons);
     const std::uint32_t trials = std::clamp(all_trial_photons / photons, least_trials, most_trials);
-    const auto cells_of = [&](std::uint32_t n) { return std::clamp(n / photons_per_cell, 1u, most_cells) + lights.size(); };
+    const auto cells_of = [&](std::uint32_t n) {
+        return std::clamp(n / photons_per_cell, 1u, most_cells) + lights.size();
+    };
     const std::size_t trial_cells = cells_of(photons);
     std::optional<StratifiedWavelengths> strata;
     if (render.lambda_max_nm - render.lambda_min_nm + 1 > STOKES_WAVELENGTHS)
         strata.emplace(render.lambda_min_nm, wavelength_importance(scene_));
     EmissionTrial trial(device_, photons);
-    EmissionCells cells = EmissionCells::even(lights, photons);
+    EmissionCells cells = EmissionCells::stratified(lights, photons);
     if (cells.records().empty()) return cells;
     for (PhotonMap& map : maps_) map.track_paths(true);
     for (std::uint32_t i = 0; i < trials; ++i) {
@@ -156,17 +159,17 @@ EmissionCells Renderer::aimed_cells() {
         pass_.make(strata ? strata->draw(render.seed, pass) : pass_wavelengths(render, pass), pass, photons);
         for (PhotonMap& map : maps_) map.clear();
         tracer_.trace(on_device_, pass_.buffers(), photons, maps_);
-        see_points(view_.camera());
+        find_visible_points(view_.camera());
         trial.add(cells, on_device_, pass_.buffers(), maps_, view_.camera(), gather_.points(), on_device_.textures);
     }
     for (PhotonMap& map : maps_) map.track_paths(false);
-    return EmissionCells::aimed(lights, trial.samples(), even_share, cells_of(photons_), photons_);
+    return EmissionCells::aimed(lights, trial.samples(), uniform_share, cells_of(photons_), photons_);
 }
 
-// From the points of this picture, be it a crop: photons are counted about them, so that a crop has the radii of its part
-// of the whole.
+// From the points of this picture, be it a crop: photons are counted about them, so that a crop has the radii of its
+// part of the whole.
 std::vector<PixelRadius> Renderer::find_local_radii(double radius_mm) {
-    see_points(view_.camera());
+    find_visible_points(view_.camera());
     const Buffer<float> counts(device_, "photons about points",
                                std::vector<float>(std::size_t{count_levels} * view_.ray_count(), 0.0f));
     float counted_mm = least_count_factor * static_cast<float>(radius_mm);
@@ -174,8 +177,8 @@ std::vector<PixelRadius> Renderer::find_local_radii(double radius_mm) {
         for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
             const PhotonMap& map = maps_[m];
             if (map.used() == 0) continue;
-            hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
-                                counted_mm);
+            hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm,
+                                on_device_.maximum_mm, counted_mm);
             gather_.count_photons(m, level, hash_, counts);
         }
     return pixel_radii(gather_.points().download(), counts.download(), view_.camera().width, view_.camera().height);
@@ -190,16 +193,16 @@ void Renderer::render_pass(std::uint32_t pass) {
     pass_.make(pass, photons_);
     for (PhotonMap& map : maps_) map.clear();
     const PhotonAccount account = tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
-    see_points(view_.camera());
+    find_visible_points(view_.camera());
     if (!pass_.buffers().store_direct)
         gather_.add_direct_light(on_device_, seen_scene(), pass_.buffers().constants, film_);
-    see_maps(radius_mm);
+    gather_maps(radius_mm);
     book_.add(account, image_weight_nm(scene_.render.lambda_min_nm, scene_.render.lambda_max_nm));
     ++passes_;
 }
 
 // What the camera's rays meet, at the end of all reflections; emitters among it are added to the film.
-void Renderer::see_points(const CameraRecord& camera) {
+void Renderer::find_visible_points(const CameraRecord& camera) {
     view_.make_rays(camera, pass_.buffers().constants, camera_rays_);
     const RayScene& rays = on_device_.rays;
     const std::uint32_t count = view_.ray_count();
@@ -217,15 +220,15 @@ GatherScene Renderer::seen_scene() const {
 }
 
 // Adds the photons to the film, map by map.
-void Renderer::see_maps(double radius_mm) {
+void Renderer::gather_maps(double radius_mm) {
     gather_.choose_radii();
     gather_.measure_disks(on_device_, pass_.buffers().constants, static_cast<float>(radius_mm));
     for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
         const PhotonMap& map = maps_[m];
         if (map.used() == 0) continue;
         for (const float radius_class : gather_.radius_classes()) {
-            hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm, on_device_.maximum_mm,
-                                radius_class * static_cast<float>(radius_mm));
+            hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm,
+                                on_device_.maximum_mm, radius_class * static_cast<float>(radius_mm));
             gather_.add_map(m, radius_class, hash_, seen_scene(), pass_.buffers().constants, film_);
         }
     }

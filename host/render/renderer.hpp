@@ -38,8 +38,9 @@ class Renderer {
     const LedgerBook& book() const { return book_; }
     std::uint64_t camera_rays() const { return std::uint64_t{passes_} * view_.ray_count(); }
     double first_radius() const { return first_radius_mm_; }  // [mm]
-    double radius_of(std::uint32_t pass) const;                // [mm]
-    // Processor time of the trial passes that found radii and where photons should start, of all threads of the process.
+    double radius_of(std::uint32_t pass) const;               // [mm]
+    // Processor time of the trial passes that found radii and where photons should start, of all threads of the
+    // process.
     double trials_processor_s() const { return trials_processor_s_; }
 
   private:
@@ -49,9 +50,9 @@ class Renderer {
     double find_first_radius();
     EmissionCells aimed_cells();
     std::vector<PixelRadius> find_local_radii(double radius_mm);
-    void see_points(const CameraRecord& camera);
+    void find_visible_points(const CameraRecord& camera);
     GatherScene seen_scene() const;
-    void see_maps(double radius_mm);
+    void gather_maps(double radius_mm);
 
     Device device_;
     Scene scene_;

@@ -60,13 +60,12 @@ class HashBuilder {
     // Sorts the photons in the first slots of heads and flux [W/nm] into hash; slots whose normal is
     // STOKES_EMPTY_SLOT hold none. Photons of a cell keep the order of their slots. Asynchronous.
     // RunError when heads or flux are shorter than slots, and as make_hash_grid does.
-    void build(SpatialHash& hash, const Buffer<PhotonHead>& heads, const Buffer<Flux16>& flux,
-               std::uint32_t slots, glm::vec3 low_mm, glm::vec3 high_mm, float radius_mm);
+    void build(SpatialHash& hash, const Buffer<PhotonHead>& heads, const Buffer<Flux16>& flux, std::uint32_t slots,
+               glm::vec3 low_mm, glm::vec3 high_mm, float radius_mm);
 
   private:
     Device device_;
-    Kernel find_keys_, count_buckets_, scan_chunks_, scan_buckets_, scatter_slots_, sort_buckets_,
-        permute_photons_;
+    Kernel find_keys_, count_buckets_, scan_chunks_, scan_buckets_, scatter_slots_, sort_buckets_, permute_photons_;
     Buffer<std::uint32_t> keys_, histograms_, bucket_starts_, order_;
     Buffer<std::uint64_t> entries_;
 };

@@ -23,9 +23,9 @@ std::string object(const std::map<std::string, T>& entries) {
 }
 
 std::map<std::string, double> members(const Balance& b) {
-    return {{"emitted", b.emitted},   {"absorbed", b.absorbed}, {"stokes_loss", b.stokes_loss}, {"stored", b.stored},
-            {"escaped", b.escaped},   {"dropped", b.dropped},   {"roulette", b.roulette},       {"created", b.created},
-            {"imbalance", b.imbalance()}};
+    return {{"emitted", b.emitted},   {"absorbed", b.absorbed}, {"stokes_loss", b.stokes_loss},
+            {"stored", b.stored},     {"escaped", b.escaped},   {"dropped", b.dropped},
+            {"roulette", b.roulette}, {"created", b.created},   {"imbalance", b.imbalance()}};
 }
 
 }  // namespace

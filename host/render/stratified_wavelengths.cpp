@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "host/render/pass_numbers.hpp"
+#include "host/render/low_discrepancy.hpp"
 
 namespace stokes {
 
@@ -14,7 +14,7 @@ constexpr int block_bits = 7;
 constexpr std::uint32_t passes_per_block = 1u << block_bits;
 
 std::uint32_t level_of(std::uint64_t seed, std::uint32_t position) {
-    double place = even_cell(seed, position, block_bits);
+    double place = low_discrepancy_cell(seed, position, block_bits);
     std::uint32_t level = 0;
     while (level + 1 < level_shares.size() && place >= level_shares[level] * passes_per_block)
         place -= level_shares[level++] * passes_per_block;
@@ -89,7 +89,8 @@ PassWavelengths StratifiedWavelengths::draw(std::uint32_t seed, std::uint32_t pa
     const std::uint32_t per_band = STOKES_WAVELENGTHS >> turn.level;
     std::array<double, STOKES_WAVELENGTHS> places;
     for (std::uint32_t i = 0; i < places.size(); ++i)
-        places[i] = i / per_band * per_band + per_band * even_number(derived_seed(level_seed, i), turn.index);
+        places[i] =
+            i / per_band * per_band + per_band * low_discrepancy_number(derived_seed(level_seed, i), turn.index);
     std::sort(places.begin(), places.end());
 
     PassWavelengths result{};

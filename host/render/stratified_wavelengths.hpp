@@ -9,9 +9,9 @@
 //   sum over k different members of g / (m ... m joint_ratio(their strata))  the sum over all rows of k
 //   wavelengths.
 //
-// Over the passes of a render the numbers of sets in 1, 2, .. bands are as near their shares as they can be, and the sets
-// of a kind cover each stratum evenly: the mean over passes settles faster than that of independent ones, and each pass
-// by itself is drawn as if alone.
+// Over the passes of a render the numbers of sets in 1, 2, .. bands are as near their shares as they can be, and the
+// sets of a kind cover each stratum evenly: the mean over passes settles faster than that of independent ones, and each
+// pass by itself is drawn as if alone.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ namespace stokes {
 
 // How often a set is drawn in 1, 2, 4, 8 and 16 bands. The variance of shipped lamps on shipped fluorophores
 // is least where most sets have 16, and only pairs within a stratum suffer. Multiples of 1/128.
-inline constexpr std::array<double, STOKES_STRATA_LEVELS> level_shares = {
-    1.0 / 128.0, 1.0 / 128.0, 1.0 / 64.0, 7.0 / 64.0, 55.0 / 64.0};
+inline constexpr std::array<double, STOKES_STRATA_LEVELS> level_shares = {1.0 / 128.0, 1.0 / 128.0, 1.0 / 64.0,
+                                                                          7.0 / 64.0, 55.0 / 64.0};
 
 // Expected number of ordered rows of different members of a set that lie in these strata (0 to 15, in any
 // order), over the product of each one's own expected count; in (0, 1], 0 for more than 16.

@@ -11,24 +11,20 @@ namespace stokes {
 
 namespace {
 
-constexpr double even_share = 0.1;
+constexpr double uniform_share = 0.1;
 // X, Y and Z of the fluorescence all depend on what is taken up.
 constexpr double excitation_share = 3.0;
 
 using Values = std::vector<double>;  // by wavelength of the range
 
-double total(const Values& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
+double total(const Values& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 class Range {
   public:
     explicit Range(const RenderSettings& render)
-        : first_nm_(render.lambda_min_nm),
-          size_(static_cast<std::size_t>(render.lambda_max_nm - first_nm_ + 1)) {
+        : first_nm_(render.lambda_min_nm), size_(static_cast<std::size_t>(render.lambda_max_nm - first_nm_ + 1)) {
         const ColourMatching& observer = cie1931();
-        for (const Spectrum* matching : {&observer.x, &observer.y, &observer.z})
-            eye_.push_back(of(*matching));
+        for (const Spectrum* matching : {&observer.x, &observer.y, &observer.z}) eye_.push_back(of(*matching));
     }
     std::size_t size() const { return size_; }
     const std::vector<Values>& eye() const { return eye_; }
@@ -57,7 +53,7 @@ void add_square(Values& to, const Values& what, double share) {
     for (std::size_t i = 0; i < to.size(); ++i) to[i] += share * (what[i] / sum) * (what[i] / sum);
 }
 
-void add_squares_seen(Values& to, const Range& range, const Values& light, double share) {
+void add_observed_squares(Values& to, const Range& range, const Values& light, double share) {
     for (const Values& matching : range.eye()) add_square(to, product(light, matching), share);
 }
 
@@ -74,22 +70,20 @@ Values squares_of(const Scene& scene, const Range& range) {
     std::set<int> fluorophores;
     for (const Material& material : scene.materials) {
         if (material.kind == MaterialKind::diffuse) reflectances.push_back(range.of(material.reflectance));
-        if (material.fluorophore >= 0 && material.fluorescent_fraction > 0.0)
-            fluorophores.insert(material.fluorophore);
+        if (material.fluorophore >= 0 && material.fluorescent_fraction > 0.0) fluorophores.insert(material.fluorophore);
     }
     const double lamp_share = 1.0 / static_cast<double>(lamps.size());
     Values squares(range.size(), 0.0);
     for (const Values& lamp : lamps)
         for (const Values& reflectance : reflectances)
-            add_squares_seen(squares, range, product(lamp, reflectance),
-                             lamp_share / static_cast<double>(reflectances.size()));
+            add_observed_squares(squares, range, product(lamp, reflectance),
+                                 lamp_share / static_cast<double>(reflectances.size()));
     for (const int index : fluorophores) {
         const Fluorophore& fluorophore = scene.fluorophores[static_cast<std::size_t>(index)];
         const Values emission = range.of(fluorophore.emission);
         const Values excitation = below_emission(range.of(fluorophore.excitation), emission);
-        for (const Values& lamp : lamps)
-            add_square(squares, product(lamp, excitation), excitation_share * lamp_share);
-        add_squares_seen(squares, range, emission, 1.0);
+        for (const Values& lamp : lamps) add_square(squares, product(lamp, excitation), excitation_share * lamp_share);
+        add_observed_squares(squares, range, emission, 1.0);
     }
     return squares;
 }
@@ -115,7 +109,7 @@ Values wavelength_importance(const Scene& scene) {
     for (double& value : expected) value = std::sqrt(value);
     const double sum = total(expected), even = 1.0 / static_cast<double>(range.size());
     for (double& value : expected)
-        value = sum > 0.0 ? (1.0 - even_share) * value / sum + even_share * even : even;
+        value = sum > 0.0 ? (1.0 - uniform_share) * value / sum + uniform_share * even : even;
     limit_to_one(expected);
     return expected;
 }

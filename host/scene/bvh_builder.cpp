@@ -73,8 +73,7 @@ BvhSet make_set(const std::vector<Triangle>& triangles, unsigned threads) {
 // A flat axis takes part of the largest extent, a scene without any extent 1 mm.
 BvhGrid make_grid(const BvhBox& box) {
     std::array<double, 3> extent{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        extent[axis] = static_cast<double>(box.hi[axis]) - box.lo[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) extent[axis] = static_cast<double>(box.hi[axis]) - box.lo[axis];
     const double largest = *std::max_element(extent.begin(), extent.end());
     std::array<float, 3> scale{};
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -41,8 +41,7 @@ inline std::vector<BvhChunk> make_chunks(unsigned threads, std::uint32_t begin, 
 template <class Part, class Run>
 std::vector<Part> run_chunks(unsigned threads, const std::vector<BvhChunk>& chunks, const Run& run) {
     std::vector<Part> parts(chunks.size());
-    run_parallel(threads, chunks.size(),
-                 [&](std::size_t i) { parts[i] = run(chunks[i].first, chunks[i].second); });
+    run_parallel(threads, chunks.size(), [&](std::size_t i) { parts[i] = run(chunks[i].first, chunks[i].second); });
     return parts;
 }
 

@@ -87,10 +87,7 @@ struct Sides {
 class Divider {
   public:
     Divider(const SpatialSplit& split, const BvhClipper& clipper)
-        : split_(split),
-          clipper_(clipper),
-          left_area_(split.left.half_area()),
-          right_area_(split.right.half_area()) {}
+        : split_(split), clipper_(clipper), left_area_(split.left.half_area()), right_area_(split.right.half_area()) {}
 
     Sides divide(const BvhRef& ref) const {
         if (ref.box.lo[split_.axis] >= split_.plane_mm) return {{}, ref.box};

@@ -114,8 +114,8 @@ BvhHalves partition(BvhSet set, const GoesLeft& goes_left, unsigned threads) {
         set = {std::move(out), 0, set.count(), set.box, set.spare};
     } else {
         const auto first = set.storage->begin();
-        middle = static_cast<std::uint32_t>(
-            std::stable_partition(first + set.begin, first + set.end, goes_left) - first);
+        middle =
+            static_cast<std::uint32_t>(std::stable_partition(first + set.begin, first + set.end, goes_left) - first);
     }
     return {{set.storage, set.begin, middle, {}, 0}, {set.storage, middle, set.end, {}, 0}};
 }
@@ -184,7 +184,8 @@ BvhHalves split_evenly(BvhSet set) {
     std::vector<BvhRef> sorted(set.storage->begin() + set.begin, set.storage->begin() + set.end);
     const auto middle = sorted.begin() + set.blocks() / 2 * 8;
     std::nth_element(sorted.begin(), middle, sorted.end(), before);
-    BvhHalves halves = partition(std::move(set), [&, at = *middle](const BvhRef& ref) { return before(ref, at); }, 1);
+    BvhHalves halves = partition(
+        std::move(set), [&, at = *middle](const BvhRef& ref) { return before(ref, at); }, 1);
     for (BvhSet* half : {&halves.first, &halves.second})
         for (std::uint32_t i = half->begin; i < half->end; ++i) half->box.add(half->ref(i).box);
     return halves;

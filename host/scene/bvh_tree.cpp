@@ -186,9 +186,8 @@ std::unique_ptr<BvhTree> build_tree(BvhSet set, const BvhClipper& clipper, const
 std::vector<const BvhTree*> wide_children(const BvhTree& tree, int width) {
     std::vector<const BvhTree*> children;
     collect(tree, width, children);
-    std::stable_sort(children.begin(), children.end(), [](const BvhTree* a, const BvhTree* b) {
-        return a->box.half_area() > b->box.half_area();
-    });
+    std::stable_sort(children.begin(), children.end(),
+                     [](const BvhTree* a, const BvhTree* b) { return a->box.half_area() > b->box.half_area(); });
     return children;
 }
 

@@ -56,13 +56,9 @@ void JsonCursor::fail_at(int line, const std::string& what) const {
     throw InputError(fmt::format("{}:{}: {}{}{}", *file_, line, path_, path_.empty() ? "" : ": ", what));
 }
 
-void JsonCursor::fail(const std::string& what) const {
-    fail_at(value_->line, what);
-}
+void JsonCursor::fail(const std::string& what) const { fail_at(value_->line, what); }
 
-void JsonCursor::fail_expected(const std::string& what) const {
-    fail("expected " + what + ", got " + got());
-}
+void JsonCursor::fail_expected(const std::string& what) const { fail("expected " + what + ", got " + got()); }
 
 void JsonCursor::fail_undefined(const std::string& part, const std::vector<std::string>& names) const {
     fail(fmt::format("no \"{}\" in {}{}", printable(value_->text), part, did_you_mean(value_->text, names)));
@@ -96,8 +92,7 @@ void JsonCursor::expect_keys(const ObjectKeys& keys) const {
     known.insert(known.end(), keys.optional.begin(), keys.optional.end());
     for (const JsonKey& key : value_->keys) {
         if (contains(known, key.name)) continue;
-        fail_at(key.line,
-                fmt::format("unknown key \"{}\"{}", printable(key.name), did_you_mean(key.name, known)));
+        fail_at(key.line, fmt::format("unknown key \"{}\"{}", printable(key.name), did_you_mean(key.name, known)));
     }
     for (const std::string& key : keys.required) {
         if (!has(key)) fail(fmt::format("missing key \"{}\"", key));
@@ -128,8 +123,7 @@ std::string JsonCursor::one_of(const std::vector<std::string>& keys) const {
     std::string found;
     for (const std::string& key : keys) {
         if (!has(key)) continue;
-        if (!found.empty())
-            fail(fmt::format("\"{}\" and \"{}\" given together; expected one of them", found, key));
+        if (!found.empty()) fail(fmt::format("\"{}\" and \"{}\" given together; expected one of them", found, key));
         found = key;
     }
     if (found.empty()) fail("expected one of the keys " + quoted_list(keys));
@@ -164,8 +158,7 @@ bool JsonCursor::boolean() const {
 }
 
 double JsonCursor::number(const NumberRange& range) const {
-    if (!is(JsonValue::Type::number) || !range.contains(value_->number))
-        fail_expected("a number " + range.text());
+    if (!is(JsonValue::Type::number) || !range.contains(value_->number)) fail_expected("a number " + range.text());
     return value_->number;
 }
 
@@ -191,8 +184,7 @@ std::size_t JsonCursor::choice(const std::vector<std::string>& words) const {
     if (is(JsonValue::Type::string)) {
         const auto found = std::find(words.begin(), words.end(), value_->text);
         if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-        fail(fmt::format("expected {}, got {}{}", quoted_list(words), got(),
-                         did_you_mean(value_->text, words)));
+        fail(fmt::format("expected {}, got {}{}", quoted_list(words), got(), did_you_mean(value_->text, words)));
     }
     fail_expected(quoted_list(words));
 }

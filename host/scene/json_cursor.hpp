@@ -74,8 +74,7 @@ class JsonCursor {
 
     // find(key), read with number() or integer(), or fallback where the key is absent.
     double number_or(const std::string& key, double fallback, const NumberRange& range) const;
-    std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
-                            std::int64_t high) const;
+    std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t low, std::int64_t high) const;
 
   private:
     std::string got() const;

@@ -74,8 +74,7 @@ class TreeBuilder {
         return close();
     }
     bool end_array() { return close(); }
-    bool parse_error(std::size_t position, const std::string& last_token,
-                     const nlohmann::json::exception& error);
+    bool parse_error(std::size_t position, const std::string& last_token, const nlohmann::json::exception& error);
 
     JsonValue take_root() { return std::move(root_); }
 
@@ -128,18 +127,17 @@ void TreeBuilder::reject_duplicate_keys(const JsonValue& object) const {
     for (const JsonKey& key : object.keys) sorted.push_back(&key);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const JsonKey* a, const JsonKey* b) { return a->name < b->name; });
-    const auto twice = std::adjacent_find(
-        sorted.begin(), sorted.end(), [](const JsonKey* a, const JsonKey* b) { return a->name == b->name; });
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end(),
+                                          [](const JsonKey* a, const JsonKey* b) { return a->name == b->name; });
     if (twice == sorted.end()) return;
-    fail((*std::next(twice))->line, "key \"" + printable((*twice)->name) + "\" given twice, first in line " +
-                                        std::to_string((*twice)->line));
+    fail((*std::next(twice))->line,
+         "key \"" + printable((*twice)->name) + "\" given twice, first in line " + std::to_string((*twice)->line));
 }
 
 bool TreeBuilder::parse_error(std::size_t position, const std::string& last_token,
                               const nlohmann::json::exception& error) {
     const std::size_t before = std::min(position == 0 ? 0 : position - 1, text_.size());
-    const auto lines =
-        1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(before), '\n');
+    const auto lines = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(before), '\n');
     if (error.id == 406) fail(static_cast<int>(lines), "number out of range: " + printable(last_token));
     std::string what = error.what();
     const std::size_t begin = what.find("syntax error");

@@ -42,20 +42,17 @@ Frame read_frame(const JsonCursor& light, const char* axis_key) {
     return frame;
 }
 
-double length(const JsonCursor& where, const char* key) {
-    return where.at(key).number(length_range);
-}
+double length(const JsonCursor& where, const char* key) { return where.at(key).number(length_range); }
 
 // The light's spectrum times total over its own sum, so that it sums to total over the render's wavelengths.
-Spectrum with_total(const JsonCursor& light, const Spectrum& spectrum, double total,
-                    const RenderSettings& render) {
+Spectrum with_total(const JsonCursor& light, const Spectrum& spectrum, double total, const RenderSettings& render) {
     const double sum = spectrum.sum_1nm(render.lambda_min_nm, render.lambda_max_nm);
     const double factor = total / sum;
     if (!(sum > 0.0) || !std::isfinite(factor)) {
         light.at("spectrum")
-            .fail(fmt::format(
-                "expected some light from {} to {} nm, got {}", render.lambda_min_nm, render.lambda_max_nm,
-                sum > 0.0 ? fmt::format("a sum of only {:g}", sum) : "none at any whole nanometre"));
+            .fail(fmt::format("expected some light from {} to {} nm, got {}", render.lambda_min_nm,
+                              render.lambda_max_nm,
+                              sum > 0.0 ? fmt::format("a sum of only {:g}", sum) : "none at any whole nanometre"));
     }
     return spectrum.scaled(factor);
 }
@@ -72,8 +69,7 @@ Spectrum emitter_flux(const JsonCursor& light, const Spectrum& spectrum, double 
 }
 
 int emitter_material(const JsonCursor& light, Scene& scene) {
-    if (const auto material = light.find("material"))
-        return index_of_name(*material, "materials", scene.materials);
+    if (const auto material = light.find("material")) return index_of_name(*material, "materials", scene.materials);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if (scene.materials[i].name == built_in_black) return static_cast<int>(i);
     }
@@ -112,8 +108,7 @@ Light read_beam(const JsonCursor& where, SpectrumReader& spectra, const RenderSe
 }
 
 glm::dmat4 placed(const Frame& frame, const glm::dvec3& center_mm) {
-    return {glm::dvec4(frame.u, 0), glm::dvec4(frame.axis, 0), glm::dvec4(frame.v, 0),
-            glm::dvec4(center_mm, 1)};
+    return {glm::dvec4(frame.u, 0), glm::dvec4(frame.axis, 0), glm::dvec4(frame.v, 0), glm::dvec4(center_mm, 1)};
 }
 
 // The emitter's mesh about the origin; transform: to its place.
@@ -157,8 +152,7 @@ void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene
     std::vector<std::string> names;
     for (const JsonCursor& where : lights.items()) {
         const auto type = where.at("type").choice({"beam", "rectangle", "disk", "sphere"});
-        Light light =
-            type == 0 ? read_beam(where, spectra, scene.render) : read_emitter(where, type, spectra, scene);
+        Light light = type == 0 ? read_beam(where, spectra, scene.render) : read_emitter(where, type, spectra, scene);
         light.name = read_own_name(where, fmt::format("light {}", names.size()), names);
         names.push_back(light.name);
         if (light.shape >= 0) scene.shapes[static_cast<std::size_t>(light.shape)].name = light.name;

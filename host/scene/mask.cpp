@@ -52,8 +52,7 @@ class Sweep {
         std::vector<bool> goes_on(above_.size(), false);
         std::size_t a = 0, b = 0;
         while (a < above_.size() && b < runs.size()) {
-            if (above_[a].x0 < runs[b].x1 && runs[b].x0 < above_[a].x1)
-                goes_on[a] = join(above_[a], runs[b], 2 * row);
+            if (above_[a].x0 < runs[b].x1 && runs[b].x0 < above_[a].x1) goes_on[a] = join(above_[a], runs[b], 2 * row);
             if (above_[a].x1 < runs[b].x1)
                 ++a;
             else
@@ -84,9 +83,8 @@ class Sweep {
     void finish(const Rectangles& rectangles) {
         done_.insert(done_.end(), rectangles.begin(), rectangles.end());
         if (2 * done_.size() > most_mask_triangles)
-            throw InputError(
-                fmt::format("expected a picture of fewer edges: its mask has more than {} triangles",
-                            most_mask_triangles));
+            throw InputError(fmt::format("expected a picture of fewer edges: its mask has more than {} triangles",
+                                         most_mask_triangles));
     }
 
     const Picture& picture_;
@@ -112,8 +110,7 @@ Mesh make_mask(const Picture& picture, double width_mm, double height_mm, const 
     for (const Rectangle& r : rectangles) {
         const auto first = static_cast<std::uint32_t>(mesh.positions_mm.size());
         const float x0 = x_mm(r.x0), x1 = x_mm(r.x1), z0 = z_mm(r.z0), z1 = z_mm(r.z1);
-        mesh.positions_mm.insert(mesh.positions_mm.end(),
-                                 {{x0, 0, z0}, {x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}});
+        mesh.positions_mm.insert(mesh.positions_mm.end(), {{x0, 0, z0}, {x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}});
         mesh.triangles.push_back({first, first + 1, first + 2});
         mesh.triangles.push_back({first, first + 2, first + 3});
     }

@@ -59,8 +59,7 @@ Fluorophore read_fluorophore(const std::string& name, const JsonCursor& where, S
 // As it looks on white paper.
 std::shared_ptr<const Picture> read_texture(const std::string& path) {
     Picture picture = read_picture(path);
-    for (std::size_t i = 0; i < picture.opacity.size(); ++i)
-        picture.luminance[i] = picture.luminance_over(1.0f, i);
+    for (std::size_t i = 0; i < picture.opacity.size(); ++i) picture.luminance[i] = picture.luminance_over(1.0f, i);
     picture.opacity.clear();
     return std::make_shared<const Picture>(std::move(picture));
 }
@@ -87,8 +86,8 @@ void check_fresnel(const JsonCursor& fresnel, const Material& material, const Sc
     if (material.medium < 0) fresnel.fail("Fresnel reflection needs a medium and subsurface light");
     const double eta = scene.media[static_cast<std::size_t>(material.medium)].eta;
     if (eta > largest_green_eta)
-        fresnel.fail(fmt::format("Fresnel reflection needs a medium with eta up to {:g}, got {:g}",
-                                 largest_green_eta, eta));
+        fresnel.fail(
+            fmt::format("Fresnel reflection needs a medium with eta up to {:g}, got {:g}", largest_green_eta, eta));
 }
 
 Material read_translucent(const JsonCursor& where, const Scene& scene) {
@@ -125,8 +124,7 @@ Material read_translucent(const JsonCursor& where, const Scene& scene) {
 
 std::vector<Medium> read_media(const JsonCursor& media, SpectrumReader& spectra) {
     std::vector<Medium> result;
-    for (const auto& [name, where] : media.named_members())
-        result.push_back(read_medium(name, where, spectra));
+    for (const auto& [name, where] : media.named_members()) result.push_back(read_medium(name, where, spectra));
     return result;
 }
 
@@ -137,8 +135,7 @@ std::vector<Fluorophore> read_fluorophores(const JsonCursor& fluorophores, Spect
     return result;
 }
 
-std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader& spectra,
-                                     const Scene& scene) {
+std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader& spectra, const Scene& scene) {
     TextureFiles textures(spectra.folder());
     std::vector<Material> result;
     for (const auto& [name, where] : materials.named_members()) {

@@ -16,8 +16,7 @@ int index_of_name(const JsonCursor& where, const char* part, const std::vector<N
 std::vector<Medium> read_media(const JsonCursor& media, SpectrumReader& spectra);
 std::vector<Fluorophore> read_fluorophores(const JsonCursor& fluorophores, SpectrumReader& spectra);
 // scene.media and scene.fluorophores are read already.
-std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader& spectra,
-                                     const Scene& scene);
+std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader& spectra, const Scene& scene);
 
 template <typename Named>
 int index_of_name(const JsonCursor& where, const char* part, const std::vector<Named>& list) {

@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
 
-glm::dvec3 corner(const Mesh& mesh, std::uint32_t index) {
-    return glm::dvec3(mesh.positions_mm[index]);
-}
+glm::dvec3 corner(const Mesh& mesh, std::uint32_t index) { return glm::dvec3(mesh.positions_mm[index]); }
 
 // Without a height beyond the rounding of its coordinates, or so small that the normal underflows.
 bool is_degenerate(const Mesh& mesh, const glm::uvec3& triangle) {
@@ -88,9 +86,8 @@ void transform_mesh(Mesh& mesh, const glm::dmat4& transform) {
 }
 
 std::size_t count_degenerate_triangles(const Mesh& mesh) {
-    return static_cast<std::size_t>(
-        std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
-                      [&](const glm::uvec3& t) { return is_degenerate(mesh, t); }));
+    return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                                                  [&](const glm::uvec3& t) { return is_degenerate(mesh, t); }));
 }
 
 std::size_t drop_degenerate_triangles(Mesh& mesh) {

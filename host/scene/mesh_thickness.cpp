@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t most_lines = 64;
 constexpr std::size_t fewest_lines = 16;
 constexpr std::size_t most_tests = 64'000'000;  // lines times triangles, of large meshes
-constexpr float edge_margin = 1e-5f;  // share of a triangle by which it is taken larger: no gaps between them
+constexpr float edge_margin = 1e-5f;            // share of a triangle by which it is taken larger: no gaps between them
 
 struct Corners {
     glm::vec3 a, e1, e2;  // a vertex [mm] from the middle of the body, and the sides from there to the others
@@ -54,9 +54,7 @@ Body body_of(const Scene& scene, int body) {
     return result;
 }
 
-double fraction(double x) {
-    return x - std::floor(x);
-}
+double fraction(double x) { return x - std::floor(x); }
 
 // From the middles of equal shares of the area, in the order of the triangles; within the triangle by
 // Roberts's R2 sequence ("The unreasonable effectiveness of quasirandom sequences", 2018).
@@ -68,13 +66,11 @@ Lines lines_into(const std::vector<Corners>& triangles) {
     std::size_t k = 0;
     for (const Corners& t : triangles) {
         below += t.area();
-        for (; k < lines.count &&
-               (static_cast<double>(k) + 0.5) * total < below * static_cast<double>(lines.count);
+        for (; k < lines.count && (static_cast<double>(k) + 0.5) * total < below * static_cast<double>(lines.count);
              ++k) {
             const double root = std::sqrt(fraction(0.5 + 0.7548776662466927 * static_cast<double>(k)));
             const auto u = static_cast<float>(1.0 - root);
-            const auto v =
-                static_cast<float>(root * fraction(0.5 + 0.5698402909980532 * static_cast<double>(k)));
+            const auto v = static_cast<float>(root * fraction(0.5 + 0.5698402909980532 * static_cast<double>(k)));
             const glm::vec3 o = t.a + u * t.e1 + v * t.e2, d = -glm::normalize(glm::cross(t.e1, t.e2));
             lines.ox[k] = o.x, lines.oy[k] = o.y, lines.oz[k] = o.z;
             lines.dx[k] = d.x, lines.dy[k] = d.y, lines.dz[k] = d.z;
@@ -89,13 +85,11 @@ Lines lines_into(const std::vector<Corners>& triangles) {
 void cut(Lines& lines, const Corners& t, float nearest) {
     for (std::size_t k = 0; k < lines.count; ++k) {
         const float dx = lines.dx[k], dy = lines.dy[k], dz = lines.dz[k];
-        const float px = dz * t.e2.y - dy * t.e2.z, py = dx * t.e2.z - dz * t.e2.x,
-                    pz = dy * t.e2.x - dx * t.e2.y;
+        const float px = dz * t.e2.y - dy * t.e2.z, py = dx * t.e2.z - dz * t.e2.x, pz = dy * t.e2.x - dx * t.e2.y;
         const float facing = t.e1.x * px + t.e1.y * py + t.e1.z * pz;  // above 0: seen from within
         const float sx = lines.ox[k] - t.a.x, sy = lines.oy[k] - t.a.y, sz = lines.oz[k] - t.a.z;
         const float u = sx * px + sy * py + sz * pz;
-        const float qx = t.e1.y * sz - t.e1.z * sy, qy = t.e1.z * sx - t.e1.x * sz,
-                    qz = t.e1.x * sy - t.e1.y * sx;
+        const float qx = t.e1.y * sz - t.e1.z * sy, qy = t.e1.z * sx - t.e1.x * sz, qz = t.e1.x * sy - t.e1.y * sx;
         const float v = dx * qx + dy * qy + dz * qz;
         const float length = (t.e2.x * qx + t.e2.y * qy + t.e2.z * qz) / facing;
         const float margin = edge_margin * facing;

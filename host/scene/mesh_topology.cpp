@@ -51,8 +51,7 @@ class Welder {
         std::array<std::uint32_t, 3> bits{};
         std::memcpy(bits.data(), &p, sizeof bits);
         std::uint64_t hash = bits[0];
-        for (const std::uint64_t word : {bits[1], bits[2]})
-            hash = (hash ^ (hash >> 29)) * 0x9e3779b97f4a7c15u + word;
+        for (const std::uint64_t word : {bits[1], bits[2]}) hash = (hash ^ (hash >> 29)) * 0x9e3779b97f4a7c15u + word;
         hash = (hash ^ (hash >> 32)) * 0x9e3779b97f4a7c15u;
         for (std::size_t slot = hash >> 32;; ++slot) {
             std::uint32_t& index = slots_[slot & (slots_.size() - 1)];
@@ -88,8 +87,7 @@ Surface surface_of(const Scene& scene, int body) {
         welded.clear();
         for (const glm::vec3& p : shape.mesh.positions_mm) {
             welded.push_back(welder.index_of(p, surface.points));
-            for (int axis = 0; axis < 3; ++axis)
-                farthest = std::max(farthest, std::abs(static_cast<double>(p[axis])));
+            for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(static_cast<double>(p[axis])));
         }
         for (const glm::uvec3& t : shape.mesh.triangles) {
             const glm::uvec3 triangle(welded[t.x], welded[t.y], welded[t.z]);
@@ -154,9 +152,8 @@ std::vector<Edge> mended(const Surface& surface, const std::vector<Edge>& rim) {
     const double tolerance = surface.tolerance_mm;
     std::vector<std::uint32_t> vertices;  // by x
     for (const Edge& edge : rim) vertices.insert(vertices.end(), {edge.from, edge.to});
-    std::sort(vertices.begin(), vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::tie(points[a].x, a) < std::tie(points[b].x, b);
-    });
+    std::sort(vertices.begin(), vertices.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return std::tie(points[a].x, a) < std::tie(points[b].x, b); });
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
     std::vector<std::uint32_t> kept;  // by x
@@ -176,11 +173,10 @@ std::vector<Edge> mended(const Surface& surface, const std::vector<Edge>& rim) {
         if (from == to) continue;
         const glm::dvec3 a = points[from], along = points[to] - a;
         const double length = glm::length(along);
-        const double low = std::min(a.x, points[to].x) - tolerance,
-                     high = std::max(a.x, points[to].x) + tolerance;
+        const double low = std::min(a.x, points[to].x) - tolerance, high = std::max(a.x, points[to].x) + tolerance;
         cuts.clear();
-        auto v = std::lower_bound(kept.begin(), kept.end(), low,
-                                  [&](std::uint32_t i, double x) { return points[i].x < x; });
+        auto v =
+            std::lower_bound(kept.begin(), kept.end(), low, [&](std::uint32_t i, double x) { return points[i].x < x; });
         for (; v != kept.end() && points[*v].x <= high; ++v) {
             const double t = glm::dot(points[*v] - a, along) / length;
             if (*v == from || *v == to || t <= 0.0 || t >= length) continue;
@@ -242,9 +238,8 @@ std::vector<Edge> edges_of(const Surface& surface) {
 }
 
 [[noreturn]] void fail_to_walk(const Scene& scene, const Shape& shape, const std::string& got) {
-    throw InputError(
-        fmt::format("{}: shape \"{}\": transport \"walk\" expects a closed mesh or a flat sheet, got {}",
-                    scene.file, shape.name, got));
+    throw InputError(fmt::format("{}: shape \"{}\": transport \"walk\" expects a closed mesh or a flat sheet, got {}",
+                                 scene.file, shape.name, got));
 }
 
 }  // namespace
@@ -284,10 +279,9 @@ std::vector<BodyKind> check_walkable(const Scene& scene) {
         seen[body] = true;
         const BodyTopology topology = body_topology(scene, shape.body);
         if (topology.kind == BodyKind::open)
-            fail_to_walk(
-                scene, shape,
-                fmt::format("{} edges without a neighbour, one at ({:.6g}, {:.6g}, {:.6g}) mm",
-                            topology.rim_edges, topology.rim_mm.x, topology.rim_mm.y, topology.rim_mm.z));
+            fail_to_walk(scene, shape,
+                         fmt::format("{} edges without a neighbour, one at ({:.6g}, {:.6g}, {:.6g}) mm",
+                                     topology.rim_edges, topology.rim_mm.x, topology.rim_mm.y, topology.rim_mm.z));
         // Two sides back to back enclose nothing but rounding.
         const double rounding = FLT_EPSILON * std::pow(topology.area_mm2, 1.5);
         if (topology.kind == BodyKind::closed && !(topology.volume_mm3 > rounding))

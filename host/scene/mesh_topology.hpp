@@ -18,10 +18,10 @@ enum class BodyKind {
 struct BodyTopology {
     BodyKind kind = BodyKind::open;
     double area_mm2 = 0.0;
-    double volume_mm3 = 0.0;          // closed only: negative when the triangles face inward
-    double mean_curvature_mm = 0.0;   // integral of the mean curvature over the surface, convex positive
-    std::size_t rim_edges = 0;        // edges without a neighbour
-    glm::dvec3 rim_mm{0.0};           // the middle of one of them
+    double volume_mm3 = 0.0;         // closed only: negative when the triangles face inward
+    double mean_curvature_mm = 0.0;  // integral of the mean curvature over the surface, convex positive
+    std::size_t rim_edges = 0;       // edges without a neighbour
+    glm::dvec3 rim_mm{0.0};          // the middle of one of them
 };
 
 // The union of the meshes of all shapes with this body. Vertices in the same place are one; at the rim, vertices within

@@ -42,8 +42,8 @@ class ObjParser {
     }
 
     [[noreturn]] void fail_index(std::int64_t line, std::int64_t index) const {
-        fail(line, fmt::format("vertex index {} out of range: the file has {} vertices", index,
-                               mesh_.positions_mm.size()));
+        fail(line,
+             fmt::format("vertex index {} out of range: the file has {} vertices", index, mesh_.positions_mm.size()));
     }
 
     void read_vertex() {
@@ -53,8 +53,7 @@ class ObjParser {
             const auto value = parse_double(token);
             position[axis] = static_cast<float>(value.value_or(0.0));
             if (!value || !std::isfinite(position[axis])) {
-                fail(scanner_.line(),
-                     fmt::format("expected 3 finite coordinates, got \"{}\"", printable(token)));
+                fail(scanner_.line(), fmt::format("expected 3 finite coordinates, got \"{}\"", printable(token)));
             }
         }
         if (mesh_.positions_mm.size() >= std::numeric_limits<std::uint32_t>::max()) {
@@ -92,8 +91,7 @@ class ObjParser {
             }
             ++corners;
         }
-        if (corners < 3)
-            fail(scanner_.line(), fmt::format("expected a face of 3 or more vertices, got {}", corners));
+        if (corners < 3) fail(scanner_.line(), fmt::format("expected a face of 3 or more vertices, got {}", corners));
     }
 
     // "7", "7/1", "7//3", "7/1/3" or, counted back from the last vertex, "-2".
@@ -104,8 +102,7 @@ class ObjParser {
         }
         const auto count = static_cast<std::int64_t>(mesh_.positions_mm.size());
         const bool too_far_back = *number < -count;
-        if (too_far_back || *number > std::numeric_limits<std::uint32_t>::max())
-            fail_index(scanner_.line(), *number);
+        if (too_far_back || *number > std::numeric_limits<std::uint32_t>::max()) fail_index(scanner_.line(), *number);
         const std::int64_t index = *number > 0 ? *number - 1 : count + *number;
         if (index > largest_index_) {
             largest_index_ = index;
@@ -120,8 +117,7 @@ class ObjParser {
         const std::string_view rest = first == std::string_view::npos ? "" : token.substr(first + 1);
         const auto number = parse_integer(rest.substr(0, rest.find('/')));
         const auto count = static_cast<std::int64_t>(uvs_.size());
-        if (!number || *number == 0 || *number < -count ||
-            *number > std::numeric_limits<std::uint32_t>::max()) {
+        if (!number || *number == 0 || *number < -count || *number > std::numeric_limits<std::uint32_t>::max()) {
             if (largest_uv_ != no_uv) drop_uv(scanner_.line(), "expected a texture coordinate at every corner");
             return 0;
         }
@@ -147,15 +143,13 @@ class ObjParser {
     std::vector<glm::vec2> uvs_;
     std::vector<std::array<std::uint32_t, 3>> uv_triangles_;  // indices of uvs_, until one is missing
     std::int64_t largest_uv_line_ = 0;
-    std::int64_t largest_uv_ = -1;                            // no_uv: the mesh has no texture coordinates
+    std::int64_t largest_uv_ = -1;     // no_uv: the mesh has no texture coordinates
     std::int64_t largest_index_ = -1;  // a face may come before its vertices, so this is checked at the end
     std::int64_t largest_index_line_ = 0;
 };
 
 }  // namespace
 
-Mesh parse_obj(std::string_view text, const std::string& file) {
-    return ObjParser(text, file).parse();
-}
+Mesh parse_obj(std::string_view text, const std::string& file) { return ObjParser(text, file).parse(); }
 
 }  // namespace stokes

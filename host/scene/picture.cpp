@@ -23,8 +23,7 @@ struct Decoding {
     std::string_view rest;
     std::string error;
     int width = 0, height = 0, channels = 0, bit_depth = 0;
-    std::vector<png_byte>
-        samples;  // rows from the top down; 16-bit samples in the order of PNG, high byte first
+    std::vector<png_byte> samples;  // rows from the top down; 16-bit samples in the order of PNG, high byte first
     std::vector<png_bytep> rows;
     bool out_of_memory = false;
 };
@@ -51,8 +50,7 @@ bool make_room(Decoding& decoding, std::size_t row_bytes) {
         decoding.out_of_memory = true;
         return false;
     }
-    for (std::size_t y = 0; y < decoding.rows.size(); ++y)
-        decoding.rows[y] = decoding.samples.data() + y * row_bytes;
+    for (std::size_t y = 0; y < decoding.rows.size(); ++y) decoding.rows[y] = decoding.samples.data() + y * row_bytes;
     return true;
 }
 
@@ -111,8 +109,8 @@ void check_size(std::string_view bytes, const std::string& file) {
     };
     const std::uint32_t width = number(16), height = number(20);
     if (width <= largest_picture && height <= largest_picture) return;
-    throw InputError(fmt::format("{}: expected a picture of at most {} x {} pixels, got {} x {}", file,
-                                 largest_picture, largest_picture, width, height));
+    throw InputError(fmt::format("{}: expected a picture of at most {} x {} pixels, got {} x {}", file, largest_picture,
+                                 largest_picture, width, height));
 }
 
 }  // namespace
@@ -136,25 +134,20 @@ Picture parse_png(std::string_view bytes, const std::string& file) {
     Picture picture;
     picture.width = decoding.width;
     picture.height = decoding.height;
-    const std::size_t pixels =
-        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
     picture.luminance.resize(pixels);
     if (has_alpha) picture.opacity.resize(pixels);
     for (std::size_t p = 0; p < pixels; ++p) {
         const std::size_t i = p * channels;
-        picture.luminance[p] =
-            colour ? std::min(1.0f, 0.2126f * linear[sample(i)] + 0.7152f * linear[sample(i + 1)] +
-                                        0.0722f * linear[sample(i + 2)])
-                   : linear[sample(i)];
+        picture.luminance[p] = colour ? std::min(1.0f, 0.2126f * linear[sample(i)] + 0.7152f * linear[sample(i + 1)] +
+                                                           0.0722f * linear[sample(i + 2)])
+                                      : linear[sample(i)];
         if (has_alpha)
-            picture.opacity[p] =
-                static_cast<float>(sample(i + channels - 1)) / static_cast<float>(linear.size() - 1);
+            picture.opacity[p] = static_cast<float>(sample(i + channels - 1)) / static_cast<float>(linear.size() - 1);
     }
     return picture;
 }
 
-Picture read_picture(const std::string& path) {
-    return parse_png(read_file(path), path);
-}
+Picture read_picture(const std::string& path) { return parse_png(read_file(path), path); }
 
 }  // namespace stokes

@@ -58,9 +58,8 @@ class HeaderParser {
         } else if (name == "binary_big_endian") {
             header_.format = PlyFormat::big_endian;
         } else {
-            fail(line,
-                 fmt::format("expected format ascii, binary_little_endian or binary_big_endian, got \"{}\"",
-                             printable(name)));
+            fail(line, fmt::format("expected format ascii, binary_little_endian or binary_big_endian, got \"{}\"",
+                                   printable(name)));
         }
         const std::string_view version = words.token();
         if (version != "1.0") fail(line, fmt::format("expected version 1.0, got \"{}\"", printable(version)));
@@ -149,8 +148,6 @@ std::size_t PlyElement::least_size(PlyFormat format) const {
     return size;
 }
 
-PlyHeader read_ply_header(TextScanner& scanner, const std::string& file) {
-    return HeaderParser(scanner, file).parse();
-}
+PlyHeader read_ply_header(TextScanner& scanner, const std::string& file) { return HeaderParser(scanner, file).parse(); }
 
 }  // namespace stokes

@@ -48,9 +48,7 @@ class BinarySource {
     BinarySource(const TextScanner& body, bool big_endian) : rest_(body.rest()), big_endian_(big_endian) {}
 
     std::size_t bytes_left() const { return rest_.size(); }
-    std::string place(const std::string& file, const std::string& record) const {
-        return file + ": " + record;
-    }
+    std::string place(const std::string& file, const std::string& record) const { return file + ": " + record; }
     bool take(PlyType type, double& value) {
         switch (type) {
             case PlyType::int8:
@@ -128,9 +126,8 @@ class PlyBody {
         if (element_->count == 0) return;
         const auto room = (source_.bytes_left() + 1) / element_->least_size(header_.format);
         if (static_cast<std::uint64_t>(element_->count) <= room) return;
-        throw InputError(
-            fmt::format("{}: the header promises {} of element {}, but the file is too short for them", file_,
-                        element_->count, printable(element_->name)));
+        throw InputError(fmt::format("{}: the header promises {} of element {}, but the file is too short for them",
+                                     file_, element_->count, printable(element_->name)));
     }
 
     double take(PlyType type) {
@@ -181,8 +178,7 @@ class PlyBody {
             const int i = element_->property(name);
             return i < 0 || element_->properties[static_cast<std::size_t>(i)].is_list ? -1 : i;
         };
-        for (const auto& [u, v] :
-             {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")})
+        for (const auto& [u, v] : {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")})
             if (number(u) >= 0 && number(v) >= 0) return {number(u), number(v)};
         return {-1, -1};
     }
@@ -202,8 +198,8 @@ class PlyBody {
             if (!std::isfinite(value) && !is_uv) fail("expected finite coordinates");
             if (!std::isfinite(value)) {
                 has_uv_ = false;
-                mesh_.uv_fault = fmt::format("{}: vertex {}: expected finite texture coordinates", file_,
-                                             mesh_.positions_mm.size());
+                mesh_.uv_fault =
+                    fmt::format("{}: vertex {}: expected finite texture coordinates", file_, mesh_.positions_mm.size());
             }
             values[found - wanted] = value;
         }
@@ -247,8 +243,7 @@ class PlyBody {
     std::uint32_t take_index(PlyType type) {
         const double index = take(type);
         const double limit = have_vertices_ ? static_cast<double>(mesh_.positions_mm.size()) : 4294967295.0;
-        if (index >= 0.0 && index < limit && index == std::floor(index))
-            return static_cast<std::uint32_t>(index);
+        if (index >= 0.0 && index < limit && index == std::floor(index)) return static_cast<std::uint32_t>(index);
         fail(fmt::format("vertex index {} out of range", index));
     }
 
@@ -259,8 +254,8 @@ class PlyBody {
         for (const glm::uvec3& t : mesh_.triangles) {
             const std::uint32_t largest = std::max({t.x, t.y, t.z});
             if (largest < count) continue;
-            throw InputError(fmt::format("{}: vertex index {} out of range: the file has {} vertices", file_,
-                                         largest, count));
+            throw InputError(
+                fmt::format("{}: vertex index {} out of range: the file has {} vertices", file_, largest, count));
         }
     }
 

@@ -29,8 +29,8 @@ struct Camera {  // pinhole
 };
 
 struct Film {
-    int width = 512;   // pixels
-    int height = 512;  // pixels
+    int width = 512;                    // pixels
+    int height = 512;                   // pixels
     std::optional<double> exposure_ev;  // of the PNG; none: automatic
 };
 
@@ -58,9 +58,9 @@ inline const std::vector<std::string> emission_words = {"random", "stratified", 
 enum class Direct { photons, rays };
 inline const std::vector<std::string> direct_words = {"photons", "rays"};
 
-// Model `paper`: how far from its entry light leaves is drawn as the paper has it, from the power table, or where more of it
-// leaves, from the table's square, with weights; the mean is the same. As scene files and the command line spell them,
-// in order.
+// Model `paper`: how far from its entry light leaves is drawn as the paper has it, from the power table, or where more
+// of it leaves, from the table's square, with weights; the mean is the same. As scene files and the command line spell
+// them, in order.
 enum class Distances { table, importance };
 inline const std::vector<std::string> distances_words = {"table", "importance"};
 
@@ -85,7 +85,7 @@ struct RenderSettings {
     int lambda_min_nm = 300;  // inclusive
     int lambda_max_nm = 780;  // inclusive
     Transport transport = Transport::conserving;
-    bool tables = true;  // paper: false: no power tables, every photon integrates eq. 3-5 itself
+    bool tables = true;                 // paper: false: no power tables, every photon integrates eq. 3-5 itself
     bool first_collision_only = false;  // walk: fluorophores take light up at its first collision only
     Sampling sampling = Sampling::best;
     std::optional<Wavelengths> wavelengths;  // none: by sampling and transport
@@ -159,11 +159,11 @@ struct Material {
     // diffuse: a picture without opacity; reflectance + luminance (white - reflectance) where it lies; or
     // none
     std::shared_ptr<const Picture> texture;
-    Spectrum white = Spectrum::constant(0.0);        // in [0, 1]
-    int medium = -1;                                 // translucent with subsurface: index into Scene::media
-    int fluorophore = -1;                            // translucent: index into Scene::fluorophores, -1: none
-    double fluorescent_fraction = 0.0;               // c in [0, 1]
-    bool subsurface = true;                          // false: surface fluorescence, light leaves where it came in
+    Spectrum white = Spectrum::constant(0.0);  // in [0, 1]
+    int medium = -1;                           // translucent with subsurface: index into Scene::media
+    int fluorophore = -1;                      // translucent: index into Scene::fluorophores, -1: none
+    double fluorescent_fraction = 0.0;         // c in [0, 1]
+    bool subsurface = true;                    // false: surface fluorescence, light leaves where it came in
     bool fresnel = false;  // the surface reflects, outside and within; conserving, walk, with subsurface only
 };
 
@@ -173,7 +173,8 @@ struct Mesh {
     // Of each triangle's corners, the picture's top left corner at (0, 0), bottom right at (1, 1); empty:
     // none.
     std::vector<std::array<glm::vec2, 3>> uv = {};
-    std::string uv_fault = {};  // why the texture coordinates of its file cannot be used; empty: they can, or there are none
+    std::string uv_fault =
+        {};  // why the texture coordinates of its file cannot be used; empty: they can, or there are none
 };
 
 // Shapes with the same body exchange light below their surfaces: an exit point may lie on any of them.
@@ -181,7 +182,7 @@ struct Shape {
     std::string name;
     int material = -1;
     int body = -1;
-    int light = -1;  // index into Scene::lights when this shape is the surface of an emitter
+    int light = -1;          // index into Scene::lights when this shape is the surface of an emitter
     bool two_sided = false;  // the back is like the front, else black; opaque materials only
     Mesh mesh;
 };
@@ -199,7 +200,8 @@ struct Light {
     BeamSection section = BeamSection::disk;
     glm::dvec3 position_mm{0.0};  // centre of the cross-section
     glm::dvec3 direction{0.0, -1.0, 0.0};
-    glm::dvec3 half_u_mm{0.0};  // half-axes of the cross-section: of the disk its radii, of the rectangle half its sides
+    glm::dvec3 half_u_mm{
+        0.0};  // half-axes of the cross-section: of the disk its radii, of the rectangle half its sides
     glm::dvec3 half_v_mm{0.0};
 };
 

@@ -37,7 +37,8 @@ Scene parse_scene(std::string_view text, const std::string& path) {
     Scene scene;
     scene.file = path;
     if (const auto render = root.find("render")) scene.render = read_render_settings(*render);
-    if (const auto transport = root.find("transport")) scene.render.transport = static_cast<Transport>(transport->choice(transport_words));
+    if (const auto transport = root.find("transport"))
+        scene.render.transport = static_cast<Transport>(transport->choice(transport_words));
     if (const auto film = root.find("film")) scene.film = read_film(*film);
     scene.camera = read_camera(root.at("camera"));
 

@@ -19,8 +19,8 @@ RenderSettings read_render_settings(const JsonCursor& render) {
     s.photons_per_pass = render.integer_or("photons_per_pass", s.photons_per_pass, 1, most_photons_per_pass);
     s.alpha = render.number_or("alpha", s.alpha, {0.0, 1.0, true});
     if (const auto radius = render.find("radius_mm")) s.radius_mm = radius->number(length_range);
-    s.seed = static_cast<std::uint32_t>(
-        render.integer_or("seed", s.seed, 0, std::numeric_limits<std::uint32_t>::max()));
+    s.seed =
+        static_cast<std::uint32_t>(render.integer_or("seed", s.seed, 0, std::numeric_limits<std::uint32_t>::max()));
     s.lambda_min_nm = static_cast<int>(render.integer_or("lambda_min_nm", s.lambda_min_nm, 300, 830));
     s.lambda_max_nm = static_cast<int>(render.integer_or("lambda_max_nm", s.lambda_max_nm, 300, 830));
     if (const auto sampling = render.find("sampling"))
@@ -37,9 +37,9 @@ RenderSettings read_render_settings(const JsonCursor& render) {
         s.distances = static_cast<Distances>(distances->choice(distances_words));
     if (const auto exits = render.find("exits")) s.exits = static_cast<int>(exits->integer(1, most_exits));
     if (s.lambda_max_nm - s.lambda_min_nm + 1 < wavelengths_per_pass) {
-        render.fail(fmt::format(
-            "expected at least {} whole wavelengths from lambda_min_nm to lambda_max_nm, got {} to {}",
-            wavelengths_per_pass, s.lambda_min_nm, s.lambda_max_nm));
+        render.fail(
+            fmt::format("expected at least {} whole wavelengths from lambda_min_nm to lambda_max_nm, got {} to {}",
+                        wavelengths_per_pass, s.lambda_min_nm, s.lambda_max_nm));
     }
     return s;
 }

@@ -24,9 +24,7 @@ constexpr NumberRange angle_range{-1e6, 1e6};
 constexpr int most_tiles = 512;  // along an edge
 constexpr int most_sectors = 360;
 
-double length(const JsonCursor& where, const char* key) {
-    return where.at(key).number(length_range);
-}
+double length(const JsonCursor& where, const char* key) { return where.at(key).number(length_range); }
 
 int segments(const JsonCursor& where) {
     return static_cast<int>(where.integer_or("segments", default_segments, 4, 2048));
@@ -117,8 +115,8 @@ Mesh read_shape_mesh(const JsonCursor& where, std::size_t type, ShapeFiles& file
             return make_rectangle(length(where, "width_mm"), length(where, "height_mm"));
         case 5:
             where.expect_keys(keys::shape_prism);
-            return make_prism(static_cast<int>(where.at("sides").integer(3, 2048)),
-                              length(where, "radius_mm"), length(where, "height_mm"));
+            return make_prism(static_cast<int>(where.at("sides").integer(3, 2048)), length(where, "radius_mm"),
+                              length(where, "height_mm"));
         case mask_type:
             return read_mask(where, files);
         default:
@@ -142,10 +140,10 @@ std::vector<int> read_part_materials(const JsonCursor& where, const Scene& scene
     for (const JsonCursor& item : items) {
         materials.push_back(index_of_name(item, "materials", scene.materials));
         if (is_translucent(materials.back()) != is_translucent(materials.front()))
-            item.fail(fmt::format(
-                "expected materials all with light below their surfaces or all without, got \"{}\" and "
-                "\"{}\"",
-                material_of(scene, materials.front()).name, item.text()));
+            item.fail(
+                fmt::format("expected materials all with light below their surfaces or all without, got \"{}\" and "
+                            "\"{}\"",
+                            material_of(scene, materials.front()).name, item.text()));
     }
     return materials;
 }
@@ -201,8 +199,7 @@ int read_body(const JsonCursor& shape, int material, Scene& scene, std::map<std:
 
 constexpr const char* too_small = "too small for single precision at this distance from the origin";
 
-void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count,
-                       const char* what) {
+void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count, const char* what) {
     if (count == 0) return;
     warn(fmt::format("{}: {} ({}): left out {} triangle{} {}", where.file(), where.path(), name, count,
                      count == 1 ? "" : "s", what));
@@ -228,8 +225,7 @@ void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, 
         shape.material = index_of_name(where.at("material"), "materials", scene.materials);
         shape.two_sided = type == mask_type;
         if (shape.two_sided && material_of(scene, shape.material).kind == MaterialKind::translucent)
-            where.at("material")
-                .fail("expected a black or diffuse material for a mask, got a translucent one");
+            where.at("material").fail("expected a black or diffuse material for a mask, got a translucent one");
         shape.body = read_body(where, shape.material, scene, bodies);
         add_shape(where, std::move(shape), read_transform(where), scene);
     }
@@ -241,17 +237,16 @@ int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform,
     for (const glm::vec3& position : shape.mesh.positions_mm) {
         for (int axis = 0; axis < 3; ++axis) {
             if (coordinate_range.contains(position[axis])) continue;
-            where.fail(
-                fmt::format("expected coordinates {} mm, got {}", coordinate_range.text(), position[axis]));
+            where.fail(fmt::format("expected coordinates {} mm, got {}", coordinate_range.text(), position[axis]));
         }
     }
     const Material& material = material_of(scene, shape.material);
     if (!material.texture) shape.mesh.uv.clear();
     if (material.texture && shape.mesh.uv.empty())
-        where.fail(fmt::format(
-            "the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
-            "mesh with texture coordinates{}",
-            material.name, shape.mesh.uv_fault.empty() ? "" : " (" + shape.mesh.uv_fault + ")"));
+        where.fail(
+            fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
+                        "mesh with texture coordinates{}",
+                        material.name, shape.mesh.uv_fault.empty() ? "" : " (" + shape.mesh.uv_fault + ")"));
     const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
     const std::size_t flat = std::min(flat_before, dropped);
     if (shape.mesh.triangles.empty()) {
@@ -264,8 +259,7 @@ int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform,
     return static_cast<int>(scene.shapes.size()) - 1;
 }
 
-std::string read_own_name(const JsonCursor& where, const std::string& fallback,
-                          const std::vector<std::string>& taken) {
+std::string read_own_name(const JsonCursor& where, const std::string& fallback, const std::vector<std::string>& taken) {
     const auto name = where.find("name");
     if (!name) return fallback;
     if (std::find(taken.begin(), taken.end(), name->name()) == taken.end()) return name->name();

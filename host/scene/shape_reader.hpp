@@ -18,7 +18,6 @@ void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, 
 int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform, Scene& scene);
 
 // The key "name" of a shape or light, or "KIND INDEX" without one; a name in taken is an error.
-std::string read_own_name(const JsonCursor& where, const std::string& fallback,
-                          const std::vector<std::string>& taken);
+std::string read_own_name(const JsonCursor& where, const std::string& fallback, const std::vector<std::string>& taken);
 
 }  // namespace stokes

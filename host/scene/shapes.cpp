@@ -161,8 +161,7 @@ std::vector<Mesh> make_tiles(const glm::dvec3& size_mm, int columns, int rows, i
     return meshes;
 }
 
-std::vector<Mesh> make_sectors(double radius_mm, double height_mm, int sectors, int segments,
-                               double start_deg) {
+std::vector<Mesh> make_sectors(double radius_mm, double height_mm, int sectors, int segments, double start_deg) {
     const int per_sector = (std::max(segments, 3) + sectors - 1) / sectors, n = per_sector * sectors;
     const double start = glm::radians(start_deg);
     const auto rim = [&](int k, double y) {
@@ -173,8 +172,7 @@ std::vector<Mesh> make_sectors(double radius_mm, double height_mm, int sectors, 
     std::vector<Mesh> meshes(static_cast<std::size_t>(sectors));
     for (int k = 0; k < n; ++k) {
         Mesh& mesh = meshes[static_cast<std::size_t>(k / per_sector)];
-        const glm::vec3 a = rim(k, 0.0), b = rim(k + 1, 0.0), c = rim(k + 1, height_mm),
-                        d = rim(k, height_mm);
+        const glm::vec3 a = rim(k, 0.0), b = rim(k + 1, 0.0), c = rim(k + 1, height_mm), d = rim(k, height_mm);
         add_quad(mesh, {a, b, c, d});
         add_triangle(mesh, bottom, b, a);
         add_triangle(mesh, top, d, c);

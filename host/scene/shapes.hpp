@@ -42,7 +42,6 @@ std::vector<Mesh> make_tiles(const glm::dvec3& size_mm, int columns, int rows, i
 // Sectors: a cylinder upright on the plane y = 0 cut into equal sectors, counter-clockwise seen from above,
 // the first from start_deg on, measured from +x. segments: around the whole edge, rounded up to a multiple of
 // sectors, at least 3.
-std::vector<Mesh> make_sectors(double radius_mm, double height_mm, int sectors, int segments,
-                               double start_deg);
+std::vector<Mesh> make_sectors(double radius_mm, double height_mm, int sectors, int segments, double start_deg);
 
 }  // namespace stokes

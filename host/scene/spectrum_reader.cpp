@@ -37,8 +37,8 @@ Spectrum read_pairs(const JsonCursor& pairs) {
         if (both.size() != 2) pair.fail_expected("[wavelength in nm, value]");
         const double lambda_nm = both[0].number(wavelength_range);
         if (!result.lambda_nm.empty() && lambda_nm <= result.lambda_nm.back()) {
-            both[0].fail(fmt::format("expected wavelengths that increase, got {} after {}", lambda_nm,
-                                     result.lambda_nm.back()));
+            both[0].fail(
+                fmt::format("expected wavelengths that increase, got {} after {}", lambda_nm, result.lambda_nm.back()));
         }
         result.lambda_nm.push_back(lambda_nm);
         result.value.push_back(both[1].number(value_range));

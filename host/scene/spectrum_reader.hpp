@@ -28,8 +28,7 @@ class SpectrumReader {
     // A name from "spectra", a number, or an object. Values are >= 0; one above maximum is an error. outside
     // holds where the scene does not say; a constant is the same everywhere, an illuminant zero outside its
     // table.
-    Spectrum read(const JsonCursor& where, Outside outside,
-                  double maximum = std::numeric_limits<double>::infinity());
+    Spectrum read(const JsonCursor& where, Outside outside, double maximum = std::numeric_limits<double>::infinity());
 
   private:
     struct Definition {

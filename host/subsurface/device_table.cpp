@@ -12,36 +12,32 @@ namespace {
 const TableAxis& required_axis(const PowerTable& table, const std::string& name) {
     const TableAxis* axis = table.axis(name);
     if (axis == nullptr)
-        throw InputError(
-            fmt::format("{} table of \"{}\": no axis {}", table.component, table.medium.name, name));
+        throw InputError(fmt::format("{} table of \"{}\": no axis {}", table.component, table.medium.name, name));
     return *axis;
 }
 
 }  // namespace
 
-EvenAxis even_axis(const PowerTable& table, const TableAxis& axis) {
-    EvenAxis even{axis.values.size(), axis.values.front(), 1.0};
+UniformAxis uniform_axis(const PowerTable& table, const TableAxis& axis) {
+    UniformAxis even{axis.values.size(), axis.values.front(), 1.0};
     if (even.count == 1) return even;
     even.step = (axis.values.back() - even.first) / static_cast<double>(even.count - 1);
     for (std::size_t i = 0; i < even.count; ++i)
         if (std::abs(axis.values[i] - (even.first + static_cast<double>(i) * even.step)) > 1e-4 * even.step)
-            throw InputError(fmt::format("{} table of \"{}\": axis {} is not evenly spaced at {} {}",
-                                         table.component, table.medium.name, axis.name, axis.values[i],
-                                         axis.unit));
+            throw InputError(fmt::format("{} table of \"{}\": axis {} is not evenly spaced at {} {}", table.component,
+                                         table.medium.name, axis.name, axis.values[i], axis.unit));
     return even;
 }
 
-EvenAxis device_wavelengths(const PowerTable& table) {
-    return even_axis(table, required_axis(table, "lambda"));
-}
+UniformAxis device_wavelengths(const PowerTable& table) { return uniform_axis(table, required_axis(table, "lambda")); }
 
 TableShape table_shape(const PowerTable& table, std::size_t offset) {
-    const EvenAxis r = even_axis(table, required_axis(table, "r"));
+    const UniformAxis r = uniform_axis(table, required_axis(table, "r"));
     if (r.count < 2)
-        throw InputError(fmt::format("{} table of \"{}\": axis r has {} value, expected at least 2",
-                                     table.component, table.medium.name, r.count));
+        throw InputError(fmt::format("{} table of \"{}\": axis r has {} value, expected at least 2", table.component,
+                                     table.medium.name, r.count));
     const TableAxis* theta = table.axis("theta");
-    const EvenAxis rows = theta == nullptr ? EvenAxis{1, 0.0, 1.0} : even_axis(table, *theta);
+    const UniformAxis rows = theta == nullptr ? UniformAxis{1, 0.0, 1.0} : uniform_axis(table, *theta);
     TableShape shape{};
     shape.offset = static_cast<unsigned>(offset);
     shape.row_count = static_cast<unsigned>(rows.count);

@@ -42,8 +42,7 @@ MediumMixture make_medium_mixture(const MediumSpectra& medium, std::size_t first
     Envelope fluorescence, single;
     std::vector<double> multiple;
     for (std::size_t i = 0; i < grid.lambda_nm.size(); ++i) {
-        const double sigma_t = at.sigma_s[i] + at.sigma_a[i],
-                     sigma_tr = std::sqrt(3.0 * at.sigma_a[i] * sigma_t);
+        const double sigma_t = at.sigma_s[i] + at.sigma_a[i], sigma_tr = std::sqrt(3.0 * at.sigma_a[i] * sigma_t);
         const double v_high = std::asinh(r_max * sigma_t);
         const double v_low = std::asinh(r_max * sigma_t / (1.0 + 4.0 / 3.0 * dipole_a));
         rows[STOKES_MIX_SIGMA_T].push_back(sigma_t);

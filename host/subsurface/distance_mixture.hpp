@@ -19,7 +19,6 @@ struct MediumMixture {
 // The wavelengths, the last distance and the last angle are those of the grid, so that distances have the
 // density of the tables on that grid (lambda counted once each). first: of the rows in their buffer [floats].
 // Throws InputError as table_medium() and dipole_boundary() do.
-MediumMixture make_medium_mixture(const MediumSpectra& medium, std::size_t first = 0,
-                                  const TableGrid& grid = {});
+MediumMixture make_medium_mixture(const MediumSpectra& medium, std::size_t first = 0, const TableGrid& grid = {});
 
 }  // namespace stokes

@@ -17,13 +17,9 @@ constexpr int kFirst = -26, kLast = 14, kOrder = 10;
 // Beyond this optical distance a kernel is left out: exp(-40) = 4e-18.
 constexpr double kReach = 40.0;
 
-double exponential_integral_1(double x) {
-    return -std::expint(-x);
-}
+double exponential_integral_1(double x) { return -std::expint(-x); }
 
-double critical_cosine(double eta) {
-    return std::sqrt(1.0 - 1.0 / (eta * eta));
-}
+double critical_cosine(double eta) { return std::sqrt(1.0 - 1.0 / (eta * eta)); }
 
 // Cosines between the critical angle and the normal; denser toward the former, where R has a root.
 struct OpenCone {
@@ -47,8 +43,7 @@ class PanelBasis {
     PanelBasis() : rule_(kOrder), edges_{0.0} {
         for (int k = kFirst; k <= kLast; ++k) edges_.push_back(std::ldexp(1.0, k));
         for (std::size_t p = 0; p + 1 < edges_.size(); ++p)
-            for (int i = 0; i < kOrder; ++i)
-                nodes_.push_back(edges_[p] + (edges_[p + 1] - edges_[p]) * rule_.node[i]);
+            for (int i = 0; i < kOrder; ++i) nodes_.push_back(edges_[p] + (edges_[p + 1] - edges_[p]) * rule_.node[i]);
         for (int i = 0; i < kOrder; ++i) {
             double product = 1.0;
             for (int j = 0; j < kOrder; ++j)
@@ -148,8 +143,7 @@ class KernelRows {
             return distance > kReach ? 0.0 : exponential_integral_1(distance);
         });
         for (std::size_t k = 0; k < cone_.mu.size(); ++k) {
-            const double factor =
-                cone_.weight[k] * cone_.reflectance[k] / cone_.mu[k] * std::exp(-z / cone_.mu[k]);
+            const double factor = cone_.weight[k] * cone_.reflectance[k] / cone_.mu[k] * std::exp(-z / cone_.mu[k]);
             const double* moment = &moments_[k * count_];
             for (std::size_t j = 0; j < count_; ++j) row[j] += factor * moment[j];
         }

@@ -16,8 +16,7 @@ constexpr double kRootLast = 0.01;  // sqrt(1 - a) of the last albedo below 1
 std::vector<double> logarithmic_axis(double first, double last, std::size_t nodes) {
     std::vector<double> axis{0.0};
     for (std::size_t i = 0; i + 1 < nodes; ++i)
-        axis.push_back(first *
-                       std::pow(last / first, static_cast<double>(i) / static_cast<double>(nodes - 2)));
+        axis.push_back(first * std::pow(last / first, static_cast<double>(i) / static_cast<double>(nodes - 2)));
     return axis;
 }
 

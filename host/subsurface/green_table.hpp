@@ -22,9 +22,7 @@ struct GreenTable {
     std::vector<float> u0;  // [z] probability of leaving unscattered and not internally reflected
     std::vector<float> u1;  // [albedo][z] probability of leaving otherwise
 
-    std::size_t row(std::size_t a, std::size_t z_index) const {
-        return (a * z.size() + z_index) * rho.size();
-    }
+    std::size_t row(std::size_t a, std::size_t z_index) const { return (a * z.size() + z_index) * rho.size(); }
 };
 
 // The nodes of the shipped tables, with u0 and u1 and an empty h1: rho 0 and 0.003 .. 600, z 0 and 0.01 ..

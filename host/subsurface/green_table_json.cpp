@@ -24,8 +24,7 @@ void append_rounded(std::string& text, const std::vector<float>& values, int dig
 }
 
 std::string axis_text(const std::string& name, const std::string& unit, const std::vector<double>& values) {
-    return fmt::format("{{\"name\": \"{}\", \"unit\": \"{}\", \"values\": {}}}", name, unit,
-                       number_array(values));
+    return fmt::format("{{\"name\": \"{}\", \"unit\": \"{}\", \"values\": {}}}", name, unit, number_array(values));
 }
 
 std::string table_text(const GreenTable& table) {
@@ -50,8 +49,7 @@ std::string table_text(const GreenTable& table) {
 }
 
 // The values of axis i, which must be logarithmic but for a node at 0, or albedos.
-std::vector<double> checked_axis(const Json& axes, std::size_t i, const std::string& name,
-                                 const std::string& file) {
+std::vector<double> checked_axis(const Json& axes, std::size_t i, const std::string& name, const std::string& file) {
     const std::string key = fmt::format("axes[{}]", i), unit = name == "albedo" ? "1" : "mfp";
     const std::vector<double> values = read_axis(axes[i], file, key, name, unit).values;
     const JsonFields fields(axes[i], file, key + ".");
@@ -63,15 +61,12 @@ std::vector<double> checked_axis(const Json& axes, std::size_t i, const std::str
     }
     const double octaves = octaves_per_node(values);
     for (std::size_t n = 1; n < values.size(); ++n)
-        if (std::abs(std::log2(values[n] / values[1]) - octaves * static_cast<double>(n - 1)) >
-            1e-3 * octaves)
+        if (std::abs(std::log2(values[n] / values[1]) - octaves * static_cast<double>(n - 1)) > 1e-3 * octaves)
             fields.fail(fmt::format("values[{}]", n), "logarithmic steps");
     return values;
 }
 
-std::vector<float> as_floats(const std::vector<double>& values) {
-    return {values.begin(), values.end()};
-}
+std::vector<float> as_floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
 
 void check_probabilities(const JsonFields& fields, const GreenTable& table) {
     const std::size_t depths = table.z.size();
@@ -82,9 +77,8 @@ void check_probabilities(const JsonFields& fields, const GreenTable& table) {
         for (std::size_t z = 0; z < depths; ++z) {
             const double u1 = table.u1[a * depths + z];
             if (std::abs(green_row_integral(table, a, z) - u1) > kRounding * u1 + kNothing)
-                fields.fail("values",
-                            fmt::format("an integral over rho of {:.4g} for z = {:.4g}, albedo = {:.4g}", u1,
-                                        table.z[z], table.albedo[a]));
+                fields.fail("values", fmt::format("an integral over rho of {:.4g} for z = {:.4g}, albedo = {:.4g}", u1,
+                                                  table.z[z], table.albedo[a]));
         }
 }
 
@@ -127,8 +121,6 @@ GreenTable parse_green_table(std::string_view content, const std::string& name) 
     return table;
 }
 
-GreenTable read_green_table(const std::string& path) {
-    return parse_green_table(read_text(path), path);
-}
+GreenTable read_green_table(const std::string& path) { return parse_green_table(read_text(path), path); }
 
 }  // namespace stokes

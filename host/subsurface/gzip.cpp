@@ -14,9 +14,7 @@ namespace {
 constexpr int kGzipWindow = 15 + 16;
 constexpr std::size_t kPiece = std::size_t{1} << 18;
 
-Bytef* input(std::string_view text) {
-    return reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-}
+Bytef* input(std::string_view text) { return reinterpret_cast<Bytef*>(const_cast<char*>(text.data())); }
 
 struct Inflater {
     z_stream stream{};
@@ -55,8 +53,7 @@ std::string decompress_gzip(std::string_view content, const std::string& name, s
     int status = Z_OK;
     while (status == Z_OK) {
         const std::size_t done = result.size();
-        if (done >= limit)
-            throw InputError(fmt::format("{}: expected at most {} bytes of text", name, limit));
+        if (done >= limit) throw InputError(fmt::format("{}: expected at most {} bytes of text", name, limit));
         result.resize(std::min(done + kPiece, limit));
         stream.next_out = reinterpret_cast<Bytef*>(result.data() + done);
         stream.avail_out = static_cast<uInt>(result.size() - done);

@@ -120,8 +120,7 @@ double dipole_boundary(double eta) {
         throw InputError(fmt::format("dipole_eta {} must be a finite number of at least 1", eta));
     if (eta == 1.0) return 1.0;
     const double f_dr = -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta;
-    if (f_dr >= 1.0)
-        throw InputError(fmt::format("dipole_eta {} is beyond the range of the dipole's fit", eta));
+    if (f_dr >= 1.0) throw InputError(fmt::format("dipole_eta {} is beyond the range of the dipole's fit", eta));
     return (1.0 + f_dr) / (1.0 - f_dr);
 }
 

@@ -17,11 +17,9 @@ void check_increasing(const std::string& name, const std::vector<double>& values
     if (values.empty()) throw InputError(fmt::format("table grid: axis {} is empty", name));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!(values[i] >= low && values[i] <= high))
-            throw InputError(
-                fmt::format("table grid: {} = {} is outside of [{}, {}]", name, values[i], low, high));
+            throw InputError(fmt::format("table grid: {} = {} is outside of [{}, {}]", name, values[i], low, high));
         if (i > 0 && values[i] <= values[i - 1])
-            throw InputError(
-                fmt::format("table grid: axis {} is not strictly increasing at {}", name, values[i]));
+            throw InputError(fmt::format("table grid: axis {} is not strictly increasing at {}", name, values[i]));
     }
 }
 
@@ -80,8 +78,7 @@ void fill(PowerTable& table, const std::vector<double>& theta_deg, const Power& 
     for (double r : r_mm)
         for (const RefractionAngle& angle : angles) {
             for (std::size_t i = 0; i < lambdas; ++i)
-                row[i] =
-                    same_as[i] < i ? row[same_as[i]] : power(medium.sigma_s[i], medium.sigma_a[i], r, angle);
+                row[i] = same_as[i] < i ? row[same_as[i]] : power(medium.sigma_s[i], medium.sigma_a[i], r, angle);
             row += lambdas;
         }
 }

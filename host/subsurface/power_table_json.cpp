@@ -48,8 +48,8 @@ TableMedium read_medium(const Json& json, const std::string& path, std::size_t l
 
 void write_power_table(const PowerTable& table, const std::string& path) {
     std::string text =
-        fmt::format("{{\"format\": \"{}\", \"version\": {},\n\"model\": {}, \"component\": {},\n",
-                    power_table_format, power_table_version, json_quoted(table.model), json_quoted(table.component));
+        fmt::format("{{\"format\": \"{}\", \"version\": {},\n\"model\": {}, \"component\": {},\n", power_table_format,
+                    power_table_version, json_quoted(table.model), json_quoted(table.component));
     const TableMedium& medium = table.medium;
     text += fmt::format(
         "\"medium\": {{\"name\": {}, \"eta\": {}, \"dipole_eta\": {},\n  \"sigma_s\": {},\n  \"sigma_a\": "
@@ -58,9 +58,8 @@ void write_power_table(const PowerTable& table, const std::string& path) {
         number_array(medium.sigma_a));
     text += "\"axes\": [";
     for (const TableAxis& axis : table.axes)
-        text += fmt::format("{}{{\"name\": {}, \"unit\": {}, \"values\": {}}}",
-                            &axis == &table.axes[0] ? "" : ",\n  ", json_quoted(axis.name), json_quoted(axis.unit),
-                            number_array(axis.values));
+        text += fmt::format("{}{{\"name\": {}, \"unit\": {}, \"values\": {}}}", &axis == &table.axes[0] ? "" : ",\n  ",
+                            json_quoted(axis.name), json_quoted(axis.unit), number_array(axis.values));
     text += fmt::format("],\n\"unit\": {},\n\"values\": [", json_quoted(table.unit));
 
     // One line for each run along the last axis.
@@ -94,8 +93,7 @@ PowerTable read_power_table(const std::string& path) {
         table.axes.push_back(
             read_axis(axes[i], path, fmt::format("axes[{}]", i), kind.axes[i].first, kind.axes[i].second));
         count *= table.axes.back().values.size();
-        if (count > most_table_values)
-            fields.fail("axes", fmt::format("at most {} grid points", most_table_values));
+        if (count > most_table_values) fields.fail("axes", fmt::format("at most {} grid points", most_table_values));
     }
     table.medium = read_medium(fields.at("medium", "an object"), path, table.axes.back().values.size());
     table.values = fields.numbers("values", count);

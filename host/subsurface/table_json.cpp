@@ -49,8 +49,7 @@ double JsonFields::number(const std::string& key, double low) const {
 }
 
 std::vector<double> JsonFields::numbers(const std::string& key, std::size_t count) const {
-    const std::string expected =
-        count == 0 ? "a list of numbers" : fmt::format("a list of {} numbers", count);
+    const std::string expected = count == 0 ? "a list of numbers" : fmt::format("a list of {} numbers", count);
     const Json& list = at(key, expected);
     if (!list.is_array() || list.empty()) fail(key, expected);
     if (count != 0 && list.size() != count) fail(key, fmt::format("{}, found {}", expected, list.size()));
@@ -78,16 +77,15 @@ Json parse_json(const std::string& content, const std::string& path) {
         return Json::parse(content);
     } catch (const Json::parse_error& error) {
         const std::size_t end = std::min(error.byte, content.size());
-        const auto line =
-            1 + std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+        const auto line = 1 + std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(end), '\n');
         throw InputError(fmt::format("{}:{}: not valid JSON", path, line));
     } catch (const Json::exception&) {
         throw InputError(fmt::format("{}: a number is too large", path));
     }
 }
 
-TableAxis read_axis(const Json& json, const std::string& path, const std::string& key,
-                    const std::string& name, const std::string& unit) {
+TableAxis read_axis(const Json& json, const std::string& path, const std::string& key, const std::string& name,
+                    const std::string& unit) {
     const JsonFields fields(json, path, key + ".");
     fields.expect("name", name);
     fields.expect("unit", unit);
@@ -99,8 +97,7 @@ TableAxis read_axis(const Json& json, const std::string& path, const std::string
 }
 
 void append_numbers(std::string& text, const double* values, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i)
-        fmt::format_to(std::back_inserter(text), i == 0 ? "{}" : ",{}", values[i]);
+    for (std::size_t i = 0; i < count; ++i) fmt::format_to(std::back_inserter(text), i == 0 ? "{}" : ",{}", values[i]);
 }
 
 std::string number_array(const std::vector<double>& values) {

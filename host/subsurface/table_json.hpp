@@ -45,8 +45,8 @@ std::string read_text(const std::string& path);
 Json parse_json(const std::string& content, const std::string& path);
 
 // One entry of "axes"; key names it in complaints.
-TableAxis read_axis(const Json& json, const std::string& path, const std::string& key,
-                    const std::string& name, const std::string& unit);
+TableAxis read_axis(const Json& json, const std::string& path, const std::string& key, const std::string& name,
+                    const std::string& unit);
 
 // "[1,2.5]", with every bit of the numbers.
 std::string number_array(const std::vector<double>& values);

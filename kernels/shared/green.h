@@ -8,18 +8,18 @@
 
 // One launch of walk_green. Lengths are in mean free paths. Written by the host once per launch.
 typedef struct GreenWalk {
-    float source_depth;      // of the isotropic point source, >= 0
-    float eta;               // refractive index relative to the outside, >= 1
-    float critical_cosine;   // sqrt(1 - 1/eta^2): less is reflected totally
-    float deep;              // beyond this depth the rest of a walk is replaced by diffusion
-    float deep_offset;       // the surface that diffusion sees lies this far outside, [mfp],
-    float deep_spread;       // plus an exponentially distributed distance of this mean [mfp]
-    float rho_first;         // lateral distance at the centre of bin 1, > 0
-    float bins_per_octave;   // bin i has its centre at rho_first 2^((i - 1) / bins_per_octave)
-    unsigned int bins;       // bin 0 lies below bin 1; what is beyond the last bin is not scored
+    float source_depth;     // of the isotropic point source, >= 0
+    float eta;              // refractive index relative to the outside, >= 1
+    float critical_cosine;  // sqrt(1 - 1/eta^2): less is reflected totally
+    float deep;             // beyond this depth the rest of a walk is replaced by diffusion
+    float deep_offset;      // the surface that diffusion sees lies this far outside, [mfp],
+    float deep_spread;      // plus an exponentially distributed distance of this mean [mfp]
+    float rho_first;        // lateral distance at the centre of bin 1, > 0
+    float bins_per_octave;  // bin i has its centre at rho_first 2^((i - 1) / bins_per_octave)
+    unsigned int bins;      // bin 0 lies below bin 1; what is beyond the last bin is not scored
     unsigned int seed;
-    unsigned int stream;     // keeps the random numbers of different sources apart
-    unsigned int first_walk; // index of the launch's first walk
+    unsigned int stream;      // keeps the random numbers of different sources apart
+    unsigned int first_walk;  // index of the launch's first walk
     unsigned int walks_per_item;
     unsigned int items;
     unsigned int pad0, pad1;

@@ -20,14 +20,14 @@
 // them. A cell's key is the first key of its row (y, z) plus its x: neighbours along x stand side by side.
 // Written by SpatialHash for each build.
 typedef struct HashGrid {
-    float origin_x, origin_y, origin_z;        // corner of cell (0, 0, 0) [mm]
-    float cells_per_mm;                        // 1 / edge of a cell [1/mm]
-    unsigned int cells_x, cells_y, cells_z;    // at least 1 each
-    unsigned int row_mask;      // rows start at hash(y, z) & row_mask; 0: every cell has a key of its own
-    unsigned int keys;          // keys are below this; there are keys + 1 cell starts
-    unsigned int bucket_shift;  // key >> bucket_shift is its bucket, below STOKES_HASH_BUCKETS
-    float radius_mm;            // of the density estimate
-    unsigned int stride;        // between the x, y and z arrays of positions in cell order
+    float origin_x, origin_y, origin_z;      // corner of cell (0, 0, 0) [mm]
+    float cells_per_mm;                      // 1 / edge of a cell [1/mm]
+    unsigned int cells_x, cells_y, cells_z;  // at least 1 each
+    unsigned int row_mask;                   // rows start at hash(y, z) & row_mask; 0: every cell has a key of its own
+    unsigned int keys;                       // keys are below this; there are keys + 1 cell starts
+    unsigned int bucket_shift;               // key >> bucket_shift is its bucket, below STOKES_HASH_BUCKETS
+    float radius_mm;                         // of the density estimate
+    unsigned int stride;                     // between the x, y and z arrays of positions in cell order
 } HashGrid;
 STOKES_ASSERT_SIZE(HashGrid, 48);
 

@@ -11,15 +11,15 @@
 
 // Written by the host once per scene. A photon of light i carries row i of the pass's photon flux buffer.
 typedef struct LightRecord {
-    unsigned int kind;            // STOKES_LIGHT_*
-    unsigned int first_triangle;  // surface: first of its triangles in the Triangle buffer
-    unsigned int triangle_count;  // surface: how many
+    unsigned int kind;             // STOKES_LIGHT_*
+    unsigned int first_triangle;   // surface: first of its triangles in the Triangle buffer
+    unsigned int triangle_count;   // surface: how many
     float cumulative_probability;  // of choosing one of the lights 0..this, the last is 1
     float px, py, pz;              // beam: centre of the cross-section; surface: of a ball that holds it [mm]
     unsigned int first_area;       // surface: its first entry in the cumulative area buffer
     float dx, dy, dz;              // beam: direction, unit length
     float ball_mm;                 // surface: radius of that ball
-    float ux, uy, uz;  // beam: half-axis of the cross-section [mm]
+    float ux, uy, uz;              // beam: half-axis of the cross-section [mm]
     unsigned int pad1;
     float vx, vy, vz;  // beam: the other half-axis [mm]
     unsigned int pad2;

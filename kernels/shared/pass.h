@@ -21,19 +21,20 @@ typedef struct PassConstants {
     // Factor on the re-radiation rows for light that has been re-radiated k times before, PHYSICS section 2: the rows
     // hold the pair weight, which is that of the first time; chain[0] = 1.
     float chain[16];
-    unsigned int seed;         // of the whole render
-    unsigned int pass;         // index of the pass, from 0
-    unsigned int photons;      // photons emitted in this pass
-    float offset_mm;           // rays start this far above the surface they leave
-    unsigned int transport;    // STOKES_TRANSPORT_*
+    unsigned int seed;                  // of the whole render
+    unsigned int pass;                  // index of the pass, from 0
+    unsigned int photons;               // photons emitted in this pass
+    float offset_mm;                    // rays start this far above the surface they leave
+    unsigned int transport;             // STOKES_TRANSPORT_*
     unsigned int first_collision_only;  // `walk`: 1: fluorophores take light up at its first collision only
     // 1: the wavelengths are drawn by importance, in strata; chain is void, the rows hold each pair's own weight, and
     // lib/reradiation.clh needs the rest of this.
     unsigned int stratified;
-    unsigned int even_pixels;  // 1: rays cover a pixel, and trials its disk, evenly over passes; 0: independently (plain)
-    unsigned int strata[16];  // each wavelength's stratum, 0 to 15, never decreasing
+    unsigned int low_discrepancy_pixels;       // 1: rays cover a pixel, and trials its disk, evenly over passes; 0:
+                                               // independently (plain)
+    unsigned int strata[16];                   // each wavelength's stratum, 0 to 15, never decreasing
     float level_shares[STOKES_STRATA_LEVELS];  // how often sets are drawn in 1, 2, 4, 8, 16 bands of equal counts
-    unsigned int even_exits;  // 1: exits of a photon's first event lie at its EventWords; 0: at random
+    unsigned int low_discrepancy_exits;  // 1: exits of a photon's first event lie at its EventSample; 0: at random
     float pad1[2];
 } PassConstants;
 STOKES_ASSERT_SIZE(PassConstants, 448);

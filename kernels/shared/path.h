@@ -6,12 +6,12 @@
 
 // PathLedger.fate: how a path ended.
 #define STOKES_FATE_ALIVE 0u
-#define STOKES_FATE_ABSORBED 1u      // by a black surface, by roulette, or with no flux left
-#define STOKES_FATE_ESCAPED 2u       // left the scene
-#define STOKES_FATE_MISSED_EXIT 3u   // its exit point found no surface
-#define STOKES_FATE_MAP_FULL 4u      // no slot was left for its deposit
-#define STOKES_FATE_OVERFLOW 5u      // its flux grew beyond STOKES_FLUX_LIMIT times what it started with
-#define STOKES_FATE_EVENT_LIMIT 6u   // the pass's limit of events was reached
+#define STOKES_FATE_ABSORBED 1u     // by a black surface, by roulette, or with no flux left
+#define STOKES_FATE_ESCAPED 2u      // left the scene
+#define STOKES_FATE_MISSED_EXIT 3u  // its exit point found no surface
+#define STOKES_FATE_MAP_FULL 4u     // no slot was left for its deposit
+#define STOKES_FATE_OVERFLOW 5u     // its flux grew beyond STOKES_FLUX_LIMIT times what it started with
+#define STOKES_FATE_EVENT_LIMIT 6u  // the pass's limit of events was reached
 #define STOKES_FATE_COUNT 7u
 
 // Power tables above one can multiply light without end where it cannot leave; a path is cut at this multiple.
@@ -39,19 +39,19 @@ typedef struct PathLedger {
     LightSum absorbed;     // by surfaces and media
     LightSum stokes_loss;  // taken up by a fluorophore and not re-emitted
     LightSum escaped;
-    LightSum dropped;      // cut off: missed exits, fluorescence without a slot, the limit of events, overflow
-    LightSum roulette;     // ended by Russian roulette minus what survivors were raised by, and what random weights add
-                           // and take; mean zero
-    LightSum created;      // model `paper`: made by power tables above one
-    LightSum stored;       // put into the maps
-    unsigned int fate;           // STOKES_FATE_*
-    unsigned int missed_exits;   // deposits dropped because the exit point found no surface
-    unsigned int rays;           // rays traced for it so far, probes not counted
-    float reference_flux;        // mean flux at emission [W/nm], the measure for roulette
-    unsigned int conversions;    // how often its light has been re-radiated
-    unsigned int reflections;    // how often it was reflected specularly
-    unsigned int history;        // stratified wavelengths: bit k: its light was taken up at the pass's wavelength k
-    unsigned int leader;         // the one that the event in progress takes it up at, or STOKES_NONE
+    LightSum dropped;   // cut off: missed exits, fluorescence without a slot, the limit of events, overflow
+    LightSum roulette;  // ended by Russian roulette minus what survivors were raised by, and what random weights add
+                        // and take; mean zero
+    LightSum created;   // model `paper`: made by power tables above one
+    LightSum stored;    // put into the maps
+    unsigned int fate;  // STOKES_FATE_*
+    unsigned int missed_exits;  // deposits dropped because the exit point found no surface
+    unsigned int rays;          // rays traced for it so far, probes not counted
+    float reference_flux;       // mean flux at emission [W/nm], the measure for roulette
+    unsigned int conversions;   // how often its light has been re-radiated
+    unsigned int reflections;   // how often it was reflected specularly
+    unsigned int history;       // stratified wavelengths: bit k: its light was taken up at the pass's wavelength k
+    unsigned int leader;        // the one that the event in progress takes it up at, or STOKES_NONE
 } PathLedger;
 STOKES_ASSERT_SIZE(PathLedger, 96);
 
@@ -77,16 +77,17 @@ STOKES_ASSERT_SIZE(SurfacePoint, 32);
 
 // Two coordinates of a photon's low-discrepancy point, as scrambled binary digits, the first one lowest: they draw the
 // distance, or direction, and the azimuth of each exit of its first event. Written by emit_stratified.
-typedef struct EventWords {
+typedef struct EventSample {
     unsigned int first, second;
-} EventWords;
-STOKES_ASSERT_SIZE(EventWords, 8);
+} EventSample;
+STOKES_ASSERT_SIZE(EventSample, 8);
 
 // EventRound.sampler: how exit points are found and what leaves there.
 #define STOKES_SAMPLER_PAPER 0u      // distance from the component's power table, PHYSICS section 3
 #define STOKES_SAMPLER_DIRECT 1u     // straight from the first collision to the surface: G0 of PHYSICS section 4
 #define STOKES_SAMPLER_SCATTERED 2u  // distance from the Green's function table: G1
-#define STOKES_SAMPLER_INTEGRATED 3u // PHYSICS section 3 without tables, by integrate_power.cl; below the same as PAPER
+#define STOKES_SAMPLER_INTEGRATED \
+    3u  // PHYSICS section 3 without tables, by integrate_power.cl; below the same as PAPER
 
 // One subsurface exit. Written by sample_exits, place_exits and deposit_exits.
 typedef struct ExitPoint {
@@ -98,9 +99,9 @@ typedef struct ExitPoint {
                        // SCATTERED: depth of the first collision [mm]
     unsigned int path;
     unsigned int material;
-    float way_mm;        // to the first collision, along the refracted ray
-    float scale;         // factor on what leaves: PAPER the table's density of r over the drawn one, DIRECT 1/density
-                         // of the direction, SCATTERED 1/density of r, the last two over the number of exits
+    float way_mm;          // to the first collision, along the refracted ray
+    float scale;           // factor on what leaves: PAPER the table's density of r over the drawn one, DIRECT 1/density
+                           // of the direction, SCATTERED 1/density of r, the last two over the number of exits
     LightSum kept;         // the deposited flux; PAPER: before the branch's weight
     LightSum event_light;  // PAPER: re-emitted as fluorescence; DIRECT: what the first collision sends on; SCATTERED:
                            // what it takes up
@@ -109,10 +110,10 @@ STOKES_ASSERT_SIZE(ExitPoint, 64);
 
 // One round of events: passed by value to the photon kernels.
 typedef struct EventRound {
-    unsigned int count;      // work-items
-    unsigned int event;      // index of the round, from 0
-    unsigned int component;  // STOKES_MAP_*: which map is being written
-    unsigned int sampler;    // STOKES_SAMPLER_*
+    unsigned int count;        // work-items
+    unsigned int event;        // index of the round, from 0
+    unsigned int component;    // STOKES_MAP_*: which map is being written
+    unsigned int sampler;      // STOKES_SAMPLER_*
     unsigned int first_exit;   // first of the component's exits in the exit buffer; those of an event stand together
     unsigned int first_slot;   // first free slot of the component's map
     unsigned int slot_limit;   // capacity of the map
@@ -127,7 +128,7 @@ STOKES_ASSERT_SIZE(EventRound, 48);
 // Where the exits of a list of events stand, in groups of one component each: direct and scattered ones of a branch,
 // and with STOKES_EVENT_BRANCHES those of the other branch. Passed by value.
 typedef struct ExitGroups {
-    unsigned int count;  // 2 or 4
+    unsigned int count;          // 2 or 4
     unsigned int component[4];   // STOKES_MAP_*
     unsigned int first_exit[4];  // as in EventRound
     unsigned int first_slot[4];

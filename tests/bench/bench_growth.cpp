@@ -106,8 +106,7 @@ Json grow_triangles(Setting& setting) {
         const std::vector<Triangle> triangles = sphere_hall(static_cast<std::size_t>(wanted));
         Bvh bvh;
         const Timing build = time_of([&] { bvh = build_bvh(triangles, ray_layout(setting.device), setting.threads); });
-        const double bytes =
-            static_cast<double>(bvh.nodes.size() * 4 + bvh.blocks.size() * sizeof(BvhBlock));
+        const double bytes = static_cast<double>(bvh.nodes.size() * 4 + bvh.blocks.size() * sizeof(BvhBlock));
         const RayScene scene(setting.device, bvh);
         bvh = {};
         Kernel closest = scene.kernels.program(setting.device, "trace_rays.cl").kernel("trace_closest_all");

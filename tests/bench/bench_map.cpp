@@ -21,9 +21,7 @@ struct Photons {
     std::vector<Flux16> flux;
 };
 
-float height_at(float x, float y) {
-    return 4.0f * std::sin(0.1f * x) * std::sin(0.13f * y);
-}
+float height_at(float x, float y) { return 4.0f * std::sin(0.1f * x) * std::sin(0.13f * y); }
 
 glm::vec3 normal_at(float x, float y) {
     return glm::normalize(glm::vec3(-0.4f * std::cos(0.1f * x) * std::sin(0.13f * y),
@@ -93,9 +91,7 @@ struct Agreement {
     double starts = 0.0, positions = 0.0, flux = 0.0, film = 0.0;
 };
 
-double relative(double a, double b) {
-    return std::fabs(a - b) / std::max({std::fabs(a), std::fabs(b), 1e-30});
-}
+double relative(double a, double b) { return std::fabs(a - b) / std::max({std::fabs(a), std::fabs(b), 1e-30}); }
 
 // Weighted with the index, so that order counts.
 template <class T>
@@ -168,8 +164,8 @@ class MapBench {
     void gather() {
         const auto count = static_cast<std::uint32_t>(points_.size());
         gather_.launch(count, points_on_device_, count, std::uint32_t{STOKES_MAP_SURFACE}, 1.0f, hash_.grid(),
-                       hash_.cell_starts(), hash_.positions(), hash_.normals(), hash_.flux(), spectra_,
-                       textures_, pass_, film_);
+                       hash_.cell_starts(), hash_.positions(), hash_.normals(), hash_.flux(), spectra_, textures_,
+                       pass_, film_);
         setting_.device.finish();
     }
 

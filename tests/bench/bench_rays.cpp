@@ -193,8 +193,7 @@ bool same_hit(const Hit& a, const Hit& b) {
 
 class RayBench {
   public:
-    explicit RayBench(Setting& setting)
-        : setting_(setting), team_(setting.threads) {}
+    explicit RayBench(Setting& setting) : setting_(setting), team_(setting.threads) {}
 
     Json run(const Casting& casting) {
         const Device& device = setting_.device;
@@ -242,7 +241,8 @@ class RayBench {
             if (set.kind == Kind::any)
                 caster.any.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, out_any);
             else if (set.kind == Kind::coherent)
-                caster.camera.launch((n + caster.packet - 1) / caster.packet, n, scene.nodes, scene.blocks, scene.grid, rays, out);
+                caster.camera.launch((n + caster.packet - 1) / caster.packet, n, scene.nodes, scene.blocks, scene.grid,
+                                     rays, out);
             else
                 caster.closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, out);
             setting_.device.finish();

@@ -12,9 +12,7 @@ namespace {
 constexpr std::size_t block = 1024;
 
 // What Embree asks of every thread that traces: denormals are zero.
-void flush_denormals() {
-    _mm_setcsr(_mm_getcsr() | 0x8040u);
-}
+void flush_denormals() { _mm_setcsr(_mm_getcsr() | 0x8040u); }
 
 RTCIntersectContext context_with(RTCIntersectContextFlags flags) {
     RTCIntersectContext context;
@@ -69,9 +67,7 @@ EmbreeCaster::EmbreeCaster(const std::vector<Triangle>& triangles, unsigned thre
 
 EmbreeCaster::~EmbreeCaster() = default;
 
-double EmbreeCaster::build_wall_s() const {
-    return owner_->build_wall_s;
-}
+double EmbreeCaster::build_wall_s() const { return owner_->build_wall_s; }
 
 void EmbreeCaster::closest(Team& team, const std::vector<Ray>& rays, std::vector<Hit>& hits) const {
     team.blocks(rays.size(), block, [&](std::size_t begin, std::size_t end) {
@@ -130,8 +126,6 @@ void EmbreeCaster::coherent(Team& team, const std::vector<Ray>& rays, std::vecto
     });
 }
 
-std::string embree_version() {
-    return RTC_VERSION_STRING;
-}
+std::string embree_version() { return RTC_VERSION_STRING; }
 
 }  // namespace stokes::bench

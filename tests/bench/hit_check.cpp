@@ -28,9 +28,7 @@ std::array<glm::dvec3, 3> corners_of(const Triangle& t) {
             glm::dvec3(t.v0x + t.e2x, t.v0y + t.e2y, t.v0z + t.e2z)};
 }
 
-double largest(const glm::dvec3& v) {
-    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
+double largest(const glm::dvec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
 Crossing cross_triangle(const Triangle& triangle, const Ray& ray) {
     const auto corner = corners_of(triangle);
@@ -63,9 +61,7 @@ Crossing cross_triangle(const Triangle& triangle, const Ray& ray) {
     return result;
 }
 
-bool found(const Hit& hit) {
-    return hit.triangle != STOKES_NONE;
-}
+bool found(const Hit& hit) { return hit.triangle != STOKES_NONE; }
 
 // Whether the hit cannot be, or is none or farther where the other surely is one.
 bool refuted(const std::vector<Triangle>& triangles, const Ray& ray, const Hit& hit, const Hit& other) {

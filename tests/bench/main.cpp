@@ -14,9 +14,7 @@
 
 namespace stokes::bench {
 
-Json to_json(const Spread& spread) {
-    return {{"median", spread.median}, {"q1", spread.low}, {"q3", spread.high}};
-}
+Json to_json(const Spread& spread) { return {{"median", spread.median}, {"q1", spread.low}, {"q3", spread.high}}; }
 
 namespace {
 
@@ -34,11 +32,15 @@ double load() {
 
 Json machine(const Setting& setting) {
     const DeviceDescription& device = setting.device.description();
-    Json json{{"processor", processor()},    {"cores", std::thread::hardware_concurrency()},
-              {"threads", setting.threads},  {"device", device.name},
-              {"platform", device.platform}, {"driver", device.driver},
+    Json json{{"processor", processor()},
+              {"cores", std::thread::hardware_concurrency()},
+              {"threads", setting.threads},
+              {"device", device.name},
+              {"platform", device.platform},
+              {"driver", device.driver},
               {"ray_kernel", ray_shape_words[static_cast<std::size_t>(setting.device.ray_shape())]},
-              {"opencl", device.version},    {"load_at_start", load()}};
+              {"opencl", device.version},
+              {"load_at_start", load()}};
 #ifdef STOKES_WITH_EMBREE
     json["embree"] = embree_version();
 #else

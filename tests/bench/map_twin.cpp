@@ -165,8 +165,8 @@ struct Finder {
             _mm256_cmp_ps(cosine, _mm256_set1_ps(STOKES_GATHER_MIN_COSINE), _CMP_GT_OQ));
         const __m256i of_body =
             _mm256_cmpeq_epi32(_mm256_srli_epi32(_mm256_xor_si256(packed, body), 24), _mm256_setzero_si256());
-        unsigned mask =
-            static_cast<unsigned>(_mm256_movemask_ps(_mm256_and_ps(in, _mm256_castsi256_ps(of_body)))) & (end - i >= lanes ? 0xffu : (1u << (end - i)) - 1u);
+        unsigned mask = static_cast<unsigned>(_mm256_movemask_ps(_mm256_and_ps(in, _mm256_castsi256_ps(of_body)))) &
+                        (end - i >= lanes ? 0xffu : (1u << (end - i)) - 1u);
         for (; mask != 0; mask &= mask - 1) list[count++] = i + __builtin_ctz(mask);
         return count;
     }
@@ -234,9 +234,7 @@ float dot16(const Flux16& a, const float* b) {
 
 }  // namespace
 
-const char* twin_instructions() {
-    return lanes == 8 ? "AVX2" : sizeof(Finder) > 64 ? "AVX-512" : "scalar";
-}
+const char* twin_instructions() { return lanes == 8 ? "AVX2" : sizeof(Finder) > 64 ? "AVX-512" : "scalar"; }
 
 MapTwin::MapTwin(Team& team, std::uint32_t slots, const HashGrid& grid)
     : team_(team),

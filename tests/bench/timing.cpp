@@ -10,9 +10,7 @@ namespace stokes::bench {
 
 namespace {
 
-double seconds(const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-}
+double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
 
 double process_cpu_s() {
     rusage usage{};
@@ -81,12 +79,8 @@ const Contest::Entry& Contest::at(const std::string& name) const {
     return *entry;
 }
 
-Spread Contest::wall_s(const std::string& name) const {
-    return spread_of(column(at(name).timings, &Timing::wall_s));
-}
-Spread Contest::cpu_s(const std::string& name) const {
-    return spread_of(column(at(name).timings, &Timing::cpu_s));
-}
+Spread Contest::wall_s(const std::string& name) const { return spread_of(column(at(name).timings, &Timing::wall_s)); }
+Spread Contest::cpu_s(const std::string& name) const { return spread_of(column(at(name).timings, &Timing::cpu_s)); }
 
 Spread Contest::cpu_ratio(const std::string& slow, const std::string& fast) const {
     return ratio_of(at(slow).timings, at(fast).timings, &Timing::cpu_s);

@@ -37,9 +37,7 @@ Scene one_thing(const Mesh& mesh) {
 
 using Lines = std::vector<std::string>;
 
-Lines failures_of(const Mesh& mesh) {
-    return failed_assumptions(one_thing(mesh));
-}
+Lines failures_of(const Mesh& mesh) { return failed_assumptions(one_thing(mesh)); }
 
 Mesh inside_out(Mesh mesh) {
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
@@ -74,8 +72,7 @@ TEST_CASE("Where absorption is strong, three mean free paths count") {
     scene.media[0].sigma_s = Spectrum::constant(0.1);
     scene.media[0].sigma_a = Spectrum::constant(0.9);
     REQUIRE(failed_assumptions(scene).size() == 1);
-    CHECK(failed_assumptions(scene)[0].find("(optical thickness 2.9), the light reaches 3 mm") !=
-          std::string::npos);
+    CHECK(failed_assumptions(scene)[0].find("(optical thickness 2.9), the light reaches 3 mm") != std::string::npos);
     scene.shapes[0].mesh = make_box({200, 3.1, 200});
     CHECK(failed_assumptions(scene).empty());
 }
@@ -90,12 +87,10 @@ TEST_CASE("Without absorption every closed body is thin") {
 }
 
 TEST_CASE("A ball fails when its radius is less than the diffuse length, and so does a cave") {
-    CHECK(
-        failures_of(make_sphere(9.0)) ==
-        Lines{
-            "s.json: materials.wax: shape \"thing\" is curved within a diffuse length: its mean radius of "
-            "curvature is 9 "
-            "mm, the diffuse length 9.42 mm at 600 nm; transport \"conserving\" takes it for a half-space"});
+    CHECK(failures_of(make_sphere(9.0)) ==
+          Lines{"s.json: materials.wax: shape \"thing\" is curved within a diffuse length: its mean radius of "
+                "curvature is 9 "
+                "mm, the diffuse length 9.42 mm at 600 nm; transport \"conserving\" takes it for a half-space"});
     CHECK(failures_of(inside_out(make_sphere(9.0))).size() == 1);
     CHECK(failures_of(make_sphere(9.6)).empty());
     CHECK(failures_of(inside_out(make_sphere(9.6))).empty());
@@ -172,13 +167,11 @@ TEST_CASE("What transport paper makes of a scene is said, and only of paper") {
     scene.materials.push_back(scene.materials[0]);
     scene.materials[1].name = "soap";
     scene.render.transport = Transport::paper;
-    CHECK(
-        model_remarks(scene) ==
-        Lines{
-            "s.json: fluorophores.dye: emits up to 1.01 times what it takes up (conversion_per_nm times the "
-            "sum of its "
-            "emission)",
-            "s.json: materials: transport \"paper\" leaves out the Fresnel reflection of \"wax\", \"soap\""});
+    CHECK(model_remarks(scene) ==
+          Lines{"s.json: fluorophores.dye: emits up to 1.01 times what it takes up (conversion_per_nm times the "
+                "sum of its "
+                "emission)",
+                "s.json: materials: transport \"paper\" leaves out the Fresnel reflection of \"wax\", \"soap\""});
     for (const Transport other : {Transport::conserving, Transport::walk}) {
         scene.render.transport = other;
         CHECK(model_remarks(scene).empty());

@@ -100,8 +100,7 @@ struct Inspection {
                                    {block.v1x[lane], block.v1y[lane], block.v1z[lane]},
                                    {block.v2x[lane], block.v2y[lane], block.v2z[lane]}};
             if (index == STOKES_NONE) {
-                wrong_corner +=
-                    std::memcmp(v[0], v[1], sizeof v[0]) != 0 || std::memcmp(v[0], v[2], sizeof v[0]) != 0;
+                wrong_corner += std::memcmp(v[0], v[1], sizeof v[0]) != 0 || std::memcmp(v[0], v[2], sizeof v[0]) != 0;
                 continue;
             }
             order += lane > 0 && index <= last;
@@ -246,8 +245,7 @@ TEST_CASE("flat, far, tiny and huge scenes keep the invariants") {
     check_invariants(sphere_mesh(20, 40, 1.0f, glm::vec3(1e6f, 0.0f, 0.0f)));
     check_invariants(sphere_mesh(20, 40, 1e-6f, glm::vec3(0.0f)));
     check_invariants(sphere_mesh(20, 40, 1e11f, glm::vec3(0.0f)));
-    check_invariants(
-        std::vector<Triangle>(100, make_triangle(glm::vec3(7.0f), glm::vec3(7.0f), glm::vec3(7.0f))));
+    check_invariants(std::vector<Triangle>(100, make_triangle(glm::vec3(7.0f), glm::vec3(7.0f), glm::vec3(7.0f))));
 }
 
 TEST_CASE("triangles that coincide and sizes that fall geometrically keep the depth bounded") {
@@ -351,14 +349,12 @@ TEST_CASE("blocks and nodes are well filled on a smooth mesh") {
     const auto triangles = sphere_mesh(150, 300, 10.0f, glm::vec3(0.0f));
     const Bvh bvh = build_bvh(triangles);
     CHECK(static_cast<double>(triangles.size()) / static_cast<double>(bvh.blocks.size()) > 6.5);
-    CHECK(static_cast<double>(bvh.blocks.size() + bvh.node_count) / static_cast<double>(bvh.node_count) >
-          8.0);
+    CHECK(static_cast<double>(bvh.blocks.size() + bvh.node_count) / static_cast<double>(bvh.node_count) > 8.0);
 }
 
 TEST_CASE("corners that cannot be placed are refused by triangle") {
     auto triangles = triangle_soup(20, 1.0f, glm::vec3(1.0f), 6);
-    for (const float bad :
-         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 2e12f}) {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 2e12f}) {
         triangles[13].e1y = bad;
         CHECK_THROWS_AS(build_bvh(triangles), InputError);
         try {

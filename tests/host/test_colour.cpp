@@ -12,9 +12,7 @@ void check_equal(const glm::dvec3& found, const glm::dvec3& expected, double mar
     for (int c = 0; c < 3; ++c) CHECK(found[c] == Approx(expected[c]).margin(margin).epsilon(0.0));
 }
 
-Spectrum line(double lambda_nm) {
-    return {{lambda_nm - 1.0, lambda_nm, lambda_nm + 1.0}, {0.0, 1.0, 0.0}};
-}
+Spectrum line(double lambda_nm) { return {{lambda_nm - 1.0, lambda_nm, lambda_nm + 1.0}, {0.0, 1.0, 0.0}}; }
 
 }  // namespace
 
@@ -94,6 +92,5 @@ TEST_CASE("the sRGB transfer function inverts and is continuous") {
     CHECK(srgb_encode(1.0) == Approx(1.0).margin(1e-12));
     CHECK(srgb_encode(0.18) == Approx(0.4613561).margin(1e-6));
     CHECK(srgb_encode(0.0031308) == Approx(srgb_encode(0.0031309)).margin(2e-6));
-    for (int i = 0; i <= 1000; ++i)
-        CHECK(srgb_encode(srgb_decode(i / 1000.0)) == Approx(i / 1000.0).margin(1e-6));
+    for (int i = 0; i <= 1000; ++i) CHECK(srgb_encode(srgb_decode(i / 1000.0)) == Approx(i / 1000.0).margin(1e-6));
 }

@@ -31,9 +31,8 @@ std::string edited_sphere_scene(const std::string& what, const std::string& with
 
 TEST_CASE("render writes the picture, the PNG and the figures", "[command line]") {
     const TemporaryFolder folder;
-    const Outcome outcome =
-        run_stokes("render " + sphere_scene + small_render + "--seed 7 -o " + folder.file("a.exr") +
-                   " --png " + folder.file("a.png") + " --stats " + folder.file("a.json"));
+    const Outcome outcome = run_stokes("render " + sphere_scene + small_render + "--seed 7 -o " + folder.file("a.exr") +
+                                       " --png " + folder.file("a.png") + " --stats " + folder.file("a.json"));
     CAPTURE(outcome.err);
     REQUIRE(outcome.code == 0);
     CHECK(folder.names() == std::vector<std::string>{"a.exr", "a.json", "a.png"});
@@ -46,8 +45,7 @@ TEST_CASE("render writes the picture, the PNG and the figures", "[command line]"
     double brightest = 0.0;
     for (std::size_t i = 0; i < image.layers.at("").size(); ++i) {
         float sum = 0.0f;
-        for (const char* layer : {"fluorescence", "single", "multiple", "surface"})
-            sum += image.layers.at(layer)[i];
+        for (const char* layer : {"fluorescence", "single", "multiple", "surface"}) sum += image.layers.at(layer)[i];
         CHECK(sum == Approx(image.layers.at("")[i]).epsilon(1e-5).margin(1e-5));
         brightest = std::max(brightest, static_cast<double>(sum));
     }
@@ -72,8 +70,7 @@ TEST_CASE("render writes the picture, the PNG and the figures", "[command line]"
 TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command line]") {
     const TemporaryFolder folder;
     const std::string out = " --png " + folder.path() + "/x.png";
-    put_file(folder.file("bad.json"),
-             "{\n  \"format\": \"stokes-scene\",\n  \"version\": 1,\n  \"camra\": {}\n}\n");
+    put_file(folder.file("bad.json"), "{\n  \"format\": \"stokes-scene\",\n  \"version\": 1,\n  \"camra\": {}\n}\n");
     struct Case {
         std::string arguments, expected;
     };
@@ -83,8 +80,7 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
              {"render", "scene"},
              {"render " + sphere_scene, "output"},
              {"render nowhere.json" + out, "nowhere.json"},
-             {"render " + folder.file("bad.json") + out,
-              "bad.json:4: unknown key \"camra\"; did you mean \"camera\"?"},
+             {"render " + folder.file("bad.json") + out, "bad.json:4: unknown key \"camra\"; did you mean \"camera\"?"},
              {"render " + sphere_scene + " --passes 0" + out, "passes"},
              {"render " + sphere_scene + " --passes x" + out, "passes"},
              {"render " + sphere_scene + " --photons -3" + out, "photons"},
@@ -116,10 +112,8 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
              {"render " + sphere_scene + " --photons 268435457" + out, "--photons: expected a number"},
              {"render " + sphere_scene + " --seed -1" + out, "--seed"},
              {"render " + sphere_scene + " --png /dev/null", "/dev/null: cannot write: not a regular file"},
-             {"render " + sphere_scene + " --stats " + folder.path() + "/x.png" + out,
-              "another file for each output"},
-             {"render " + folder.file("bad.json") + " -o " + folder.file("bad.json"),
-              "would replace the scene"},
+             {"render " + sphere_scene + " --stats " + folder.path() + "/x.png" + out, "another file for each output"},
+             {"render " + folder.file("bad.json") + " -o " + folder.file("bad.json"), "would replace the scene"},
              {"render " + sphere_scene + " --colour red" + out, "--colour"},
              {"render " + sphere_scene + " --device abacus" + out, "abacus"},
              {"render " + sphere_scene + " --ray-kernel sse" + out, "--ray-kernel: expected"},
@@ -165,8 +159,8 @@ TEST_CASE("a device is chosen by its index, by its kind and by a part of its nam
     for (char& c : part) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     for (const std::string& selector : {std::string("0:0"), std::string("cpu"), part}) {
         const TemporaryFolder folder;
-        const Outcome outcome = run_stokes("render " + sphere_scene + small_render + "--quiet --device '" +
-                                           selector + "' --stats " + folder.file("a.json"));
+        const Outcome outcome = run_stokes("render " + sphere_scene + small_render + "--quiet --device '" + selector +
+                                           "' --stats " + folder.file("a.json"));
         CAPTURE(selector, outcome.err);
         REQUIRE(outcome.code == 0);
         const auto stats = nlohmann::json::parse(file_content(folder.file("a.json")));
@@ -181,15 +175,13 @@ TEST_CASE("the command line's transport takes the scene's place, and the outputs
     for (const std::string transport : {"", "paper", "conserving", "walk"}) {
         const TemporaryFolder folder;
         const std::string option = transport.empty() ? "" : "--transport " + transport;
-        const Outcome outcome =
-            run_stokes("render " + sphere_scene + small_render + "--quiet " + option + " -o " +
-                       folder.file("a.exr") + " --stats " + folder.file("a.json"));
+        const Outcome outcome = run_stokes("render " + sphere_scene + small_render + "--quiet " + option + " -o " +
+                                           folder.file("a.exr") + " --stats " + folder.file("a.json"));
         CAPTURE(transport, outcome.err);
         REQUIRE(outcome.code == 0);
         const std::string used = transport.empty() ? "conserving" : transport;
         CHECK(nlohmann::json::parse(file_content(folder.file("a.json")))["transport"] == used);
-        CHECK(std::get<std::string>(read_exr(folder.file("a.exr")).attributes.at("stokes.transport")) ==
-              used);
+        CHECK(std::get<std::string>(read_exr(folder.file("a.exr")).attributes.at("stokes.transport")) == used);
     }
 }
 
@@ -199,7 +191,7 @@ TEST_CASE("a scene's crop is rendered, and the picture says which it is", "[comm
     const auto crop_scene = [&](const std::string& left) {
         put_file(folder.file("s.json"),
                  edited_sphere_scene("\"camera\": {", "\"camera\": {\"crop\": {\"left\": " + left +
-                                                         ", \"top\": 0.125, \"width\": 0.5, \"height\": 0.5}, "));
+                                                          ", \"top\": 0.125, \"width\": 0.5, \"height\": 0.5}, "));
     };
     crop_scene("0.25");
     REQUIRE(run_stokes(render).code == 0);
@@ -225,17 +217,16 @@ TEST_CASE("a transport that there is not is bad input, in one line", "[command l
 TEST_CASE("walking through a thing with a hole is bad input", "[command line]") {
     const TemporaryFolder folder;
     put_file(folder.file("hole.obj"), "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
-    put_file(folder.file("s.json"),
-             edited_sphere_scene(
-                 "\"type\": \"sphere\", \"material\": \"glow\", \"radius_mm\": 20",
-                 "\"name\": \"hole\", \"type\": \"mesh\", \"material\": \"glow\", \"file\": \"hole.obj\""));
-    const Outcome outcome = run_stokes("render " + folder.file("s.json") + small_render +
-                                       "--transport walk --png " + folder.file("a.png"));
+    put_file(
+        folder.file("s.json"),
+        edited_sphere_scene("\"type\": \"sphere\", \"material\": \"glow\", \"radius_mm\": 20",
+                            "\"name\": \"hole\", \"type\": \"mesh\", \"material\": \"glow\", \"file\": \"hole.obj\""));
+    const Outcome outcome =
+        run_stokes("render " + folder.file("s.json") + small_render + "--transport walk --png " + folder.file("a.png"));
     CHECK(outcome.code == 2);
-    CHECK(outcome.err.find(
-              "stokes: " + folder.file("s.json") +
-              ": shape \"hole\": transport \"walk\" expects a closed mesh or a flat sheet, got 3 edges "
-              "without a neighbour, one at (") == 0);
+    CHECK(outcome.err.find("stokes: " + folder.file("s.json") +
+                           ": shape \"hole\": transport \"walk\" expects a closed mesh or a flat sheet, got 3 edges "
+                           "without a neighbour, one at (") == 0);
 }
 
 TEST_CASE("a ball smaller than its light's reach is rendered with one warning", "[command line]") {
@@ -245,8 +236,8 @@ TEST_CASE("a ball smaller than its light's reach is rendered with one warning", 
     const std::string render = "render " + folder.file("s.json") + rest;
     put_file(folder.file("s.json"), edited_sphere_scene("\"material\": \"glow\", \"radius_mm\": 20",
                                                         "\"material\": \"glow\", \"radius_mm\": 3"));
-    CHECK(run_stokes(render).err.find(
-              ": materials.glow: shape \"shape 1\" is thinner than its light reaches") != std::string::npos);
+    CHECK(run_stokes(render).err.find(": materials.glow: shape \"shape 1\" is thinner than its light reaches") !=
+          std::string::npos);
     CHECK(run_stokes(render + " --transport walk").err.empty());
 }
 
@@ -260,17 +251,15 @@ TEST_CASE("a scene that gives off more than it takes up is rendered with one war
         "render " + folder.file("s.json") + small_render + "--quiet --png " + folder.file("a.png");
     CHECK(run_stokes(render).err.empty());
     const Outcome outcome = run_stokes(render + " --transport paper");
-    CHECK(outcome.err ==
-          "stokes: warning: " + folder.file("s.json") +
-              ": fluorophores.glow: emits up to 266 times what it takes up (conversion_per_nm times the "
-              "sum of its emission)\n");
+    CHECK(outcome.err == "stokes: warning: " + folder.file("s.json") +
+                             ": fluorophores.glow: emits up to 266 times what it takes up (conversion_per_nm times the "
+                             "sum of its emission)\n");
     CHECK(outcome.code == 0);
 }
 
 // Two white sheets with a lamp between them: a photon is stored some ten times, the map begins with one slot
 // each.
-TEST_CASE("a map that finds no memory to grow drops deposits, says so, and the ledger closes",
-          "[command line]") {
+TEST_CASE("a map that finds no memory to grow drops deposits, says so, and the ledger closes", "[command line]") {
     const TemporaryFolder folder;
     put_file(folder.file("s.json"), R"({"format": "stokes-scene", "version": 1,
         "camera": {"position_mm": [0, 20, 90], "target_mm": [0, 20, 0]},
@@ -281,9 +270,9 @@ TEST_CASE("a map that finds no memory to grow drops deposits, says so, and the l
              [{"rotate_axis": [1, 0, 0], "angle_deg": 180}, {"translate_mm": [0, 10, 0]}]}],
         "lights": [{"type": "sphere", "center_mm": [0, 5, 0], "radius_mm": 2, "power_W": 5,
                     "spectrum": {"constant": 1}}]})");
-    const Outcome outcome = run_stokes("render " + folder.file("s.json") +
-                                       " --passes 2 --photons 60000 --size 24x16 --max-memory 0.06 --stats " +
-                                       folder.file("a.json"));
+    const Outcome outcome =
+        run_stokes("render " + folder.file("s.json") +
+                   " --passes 2 --photons 60000 --size 24x16 --max-memory 0.06 --stats " + folder.file("a.json"));
     CAPTURE(outcome.err);
     REQUIRE(outcome.code == 0);
     const auto stats = nlohmann::json::parse(file_content(folder.file("a.json")));

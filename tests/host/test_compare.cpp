@@ -138,8 +138,7 @@ TEST_CASE("the root mean square of the pixels' errors is that of the picture", "
     CHECK(std::isnan(errors[1]));
     double squares = 0.0;
     for (const std::size_t i : {0u, 2u, 3u}) squares += errors[i] * errors[i];
-    CHECK(std::sqrt(squares / 3.0) ==
-          Approx(compare_layer(spoilt, rgb_of(reference_xyz), 2).rmse).epsilon(1e-12));
+    CHECK(std::sqrt(squares / 3.0) == Approx(compare_layer(spoilt, rgb_of(reference_xyz), 2).rmse).epsilon(1e-12));
 }
 
 TEST_CASE("pictures of different sizes are not compared", "[compare]") {

@@ -177,8 +177,9 @@ TEST_CASE("compare draws the error and says what the colours mean", "[compare_co
     CAPTURE(run.out, run.err);
     CHECK(run.code == 0);
     // 2.5 sqrt(3.0906 / 3) = 2.5375, upwards to two digits.
-    const std::string scale = "error of surface, root mean square of X, Y, Z, linear from black, 0, by violet, red and "
-                              "orange to white, 2.6 cd/m^2";
+    const std::string scale =
+        "error of surface, root mean square of X, Y, Z, linear from black, 0, by violet, red and "
+        "orange to white, 2.6 cd/m^2";
     CHECK_THAT(run.out, Contains(png + ": " + scale + "\n"));
     CHECK_THAT(file_content(png), Contains("Description") && Contains(scale));
 

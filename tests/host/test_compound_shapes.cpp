@@ -21,9 +21,7 @@ constexpr double pi = 3.14159265358979323846;
 
 using Place = std::tuple<float, float, float>;
 
-Place place_of(const glm::vec3& p) {
-    return {p.x, p.y, p.z};
-}
+Place place_of(const glm::vec3& p) { return {p.x, p.y, p.z}; }
 
 // Every directed edge, by the exact places of its ends, once in all the meshes, and its reverse once.
 bool are_watertight(const std::vector<Mesh>& parts) {
@@ -57,8 +55,7 @@ Scene read(const std::string& shape, const std::string& transport = "conserving"
 
 }  // namespace
 
-TEST_CASE(
-    "The parts of tiles are one closed box of exact volume and area, and divide its top as a checkerboard") {
+TEST_CASE("The parts of tiles are one closed box of exact volume and area, and divide its top as a checkerboard") {
     for (const int parts : {1, 2, 3}) {
         const std::vector<Mesh> tiles = make_tiles({12, 5, 6}, 4, 3, parts);
         REQUIRE(tiles.size() == static_cast<std::size_t>(parts));
@@ -68,8 +65,7 @@ TEST_CASE(
             area += mesh_area_mm2(mesh);
             volume += mesh_volume_mm3(mesh);
             for (const glm::uvec3& t : mesh.triangles) {
-                const glm::vec3 a = mesh.positions_mm[t.x], b = mesh.positions_mm[t.y],
-                                c = mesh.positions_mm[t.z];
+                const glm::vec3 a = mesh.positions_mm[t.x], b = mesh.positions_mm[t.y], c = mesh.positions_mm[t.z];
                 CHECK(glm::dot(glm::cross(b - a, c - a), a + b + c) > 0.0f);
                 if (!(a.y == 2.5f && b.y == 2.5f && c.y == 2.5f)) continue;
                 const glm::vec3 middle = (a + b + c) / 3.0f;
@@ -83,16 +79,14 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "The parts of sectors are one closed cylinder in equal shares, counter-clockwise from where they start") {
+TEST_CASE("The parts of sectors are one closed cylinder in equal shares, counter-clockwise from where they start") {
     for (const int sectors : {1, 2, 6, 7}) {
         CAPTURE(sectors);
         const std::vector<Mesh> parts = make_sectors(5, 8, sectors, 40, 90.0);
         REQUIRE(parts.size() == static_cast<std::size_t>(sectors));
         CHECK(are_watertight(parts));
         const int sides = 40 + (sectors - 40 % sectors) % sectors;
-        const double side = 2 * 5 * std::sin(pi / sides),
-                     polygon = 0.5 * sides * 25 * std::sin(2 * pi / sides);
+        const double side = 2 * 5 * std::sin(pi / sides), polygon = 0.5 * sides * 25 * std::sin(2 * pi / sides);
         for (int k = 0; k < sectors; ++k) {
             const Mesh& mesh = parts[static_cast<std::size_t>(k)];
             CHECK(mesh_area_mm2(mesh) * sectors == Approx(2 * polygon + sides * side * 8));
@@ -129,39 +123,32 @@ TEST_CASE("Tiles and sectors of a scene are shapes of one body, watertight where
 }
 
 TEST_CASE("A body of several materials is judged as a whole, once for each of them") {
-    const Scene scene = read(
-        R"({"type": "tiles", "materials": ["a", "b"], "columns": 40, "rows": 40, "size_mm": [400, 0.5, 400]})");
+    const Scene scene =
+        read(R"({"type": "tiles", "materials": ["a", "b"], "columns": 40, "rows": 40, "size_mm": [400, 0.5, 400]})");
     CHECK(median_thickness_mm(scene, 0) == Approx(0.5).epsilon(1e-4));
     const std::vector<std::string> lines = failed_assumptions(scene);
     REQUIRE(lines.size() == 2);
-    CHECK_THAT(lines[0], Catch::Matchers::Contains(
-                             "materials.a: shape \"shape 0 (a)\" is thinner than its light reaches"));
-    CHECK_THAT(lines[1], Catch::Matchers::Contains(
-                             "materials.b: shape \"shape 0 (b)\" is thinner than its light reaches"));
-    const Scene thick = read(
-        R"({"type": "tiles", "materials": ["a", "b"], "columns": 40, "rows": 40, "size_mm": [40, 40, 40]})");
+    CHECK_THAT(lines[0],
+               Catch::Matchers::Contains("materials.a: shape \"shape 0 (a)\" is thinner than its light reaches"));
+    CHECK_THAT(lines[1],
+               Catch::Matchers::Contains("materials.b: shape \"shape 0 (b)\" is thinner than its light reaches"));
+    const Scene thick =
+        read(R"({"type": "tiles", "materials": ["a", "b"], "columns": 40, "rows": 40, "size_mm": [40, 40, 40]})");
     CHECK(failed_assumptions(thick).empty());
 }
 
 TEST_CASE("Mistakes in tiles and sectors are named") {
     const auto error = [](const std::string& shape) { return input_error([&] { read(shape); }); };
+    CHECK(error(R"({"type": "tiles", "materials": ["a", "c"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})") ==
+          "s.json:7: shapes[0].materials[1]: expected materials all with light below their surfaces or all "
+          "without, got "
+          "\"a\" and \"c\"");
     CHECK(
-        error(
-            R"({"type": "tiles", "materials": ["a", "c"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})") ==
-        "s.json:7: shapes[0].materials[1]: expected materials all with light below their surfaces or all "
-        "without, got "
-        "\"a\" and \"c\"");
-    CHECK(
-        error(R"({"type": "tiles", "materials": ["c", "d"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})")
-            .empty());
-    CHECK(
-        error(
-            R"({"type": "tiles", "materials": ["a", "z"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})") ==
-        "s.json:7: shapes[0].materials[1]: no \"z\" in materials");
-    CHECK(
-        error(
-            R"({"type": "tiles", "materials": ["a", "b", "a"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})") ==
-        "s.json:7: shapes[0].materials: expected at most 2 materials for 2 x 1 tiles, got an array of 3");
+        error(R"({"type": "tiles", "materials": ["c", "d"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})").empty());
+    CHECK(error(R"({"type": "tiles", "materials": ["a", "z"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})") ==
+          "s.json:7: shapes[0].materials[1]: no \"z\" in materials");
+    CHECK(error(R"({"type": "tiles", "materials": ["a", "b", "a"], "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})") ==
+          "s.json:7: shapes[0].materials: expected at most 2 materials for 2 x 1 tiles, got an array of 3");
     CHECK(error(R"({"type": "tiles", "material": "a", "columns": 2, "rows": 1, "size_mm": [1, 1, 1]})") ==
           "s.json:7: shapes[0]: unknown key \"material\"; did you mean \"materials\"?");
     CHECK(error(R"({"type": "tiles", "materials": ["a"], "columns": 0, "rows": 1, "size_mm": [1, 1, 1]})") ==

@@ -9,8 +9,7 @@
 using namespace stokes;
 
 TEST_CASE("A CSV table has its columns, rows and their lines") {
-    const CsvTable table =
-        parse_csv("# title\n# STATUS: MODEL\n\nnm, a,b\n300, 1,+2.5\r\n\n400,1e-3,-4\n", "t.csv");
+    const CsvTable table = parse_csv("# title\n# STATUS: MODEL\n\nnm, a,b\n300, 1,+2.5\r\n\n400,1e-3,-4\n", "t.csv");
     CHECK(table.columns == std::vector<std::string>{"nm", "a", "b"});
     REQUIRE(table.values.size() == 3);
     CHECK(table.values[0] == std::vector<double>{300, 400});
@@ -53,8 +52,7 @@ TEST_CASE("Bad CSV is one line with file and line") {
         {"nm,a\n300,nan\n", "t.csv:2: a: expected a finite number, got \"nan\""},
         {"nm,a\n300,inf\n", "t.csv:2: a: expected a finite number, got \"inf\""},
         {"nm,a\n300,1e999\n", "t.csv:2: a: expected a finite number"},
-        {"nm,a\n300,1\n300,2\n",
-         "t.csv:3: nm: expected positive wavelengths that increase, got 300 after 300"},
+        {"nm,a\n300,1\n300,2\n", "t.csv:3: nm: expected positive wavelengths that increase, got 300 after 300"},
         {"nm,a\n300,1\n# late\n", "t.csv:3: expected 2 fields, got 1"},
         {"nm,a\n-5,1\n", "t.csv:2: nm: expected positive wavelengths that increase, got -5"},
     };

@@ -21,8 +21,7 @@ float at(const MediumMixture& mixture, unsigned row, unsigned i) {
 }  // namespace
 
 // sigma_t 1 and 4, sigma_s 0.5 and 4: weights 1 and 1/16, 1 and 1/4, 1/2 and 1/4, 1/2 and 1.
-TEST_CASE("a mixture weighs its wavelengths as the envelopes of the power functions do",
-          "[distance_mixture]") {
+TEST_CASE("a mixture weighs its wavelengths as the envelopes of the power functions do", "[distance_mixture]") {
     const MediumSpectra medium{
         "m", {{400.0, 500.0}, {0.5, 4.0}, Outside::hold}, {{400.0, 500.0}, {0.5, 0.0}, Outside::hold}};
     const MediumMixture mixture = make_medium_mixture(medium, 11, two_wavelengths());
@@ -43,17 +42,14 @@ TEST_CASE("a mixture weighs its wavelengths as the envelopes of the power functi
     CHECK(double(at(mixture, STOKES_MIX_F_THIN, 0)) == Approx(4.0 / 5.0));
     CHECK(double(at(mixture, STOKES_MIX_S_DENSE, 0)) == Approx(2.0 / 3.0));
     CHECK(double(at(mixture, STOKES_MIX_S_THIN, 0)) == Approx(1.0 / 3.0));
-    const double a = std::sqrt(1.5),
-                 one = (std::asinh(9.9) - std::asinh(9.9 * 3.0 / 7.0)) * (1.0 + a) * std::exp(-a);
+    const double a = std::sqrt(1.5), one = (std::asinh(9.9) - std::asinh(9.9 * 3.0 / 7.0)) * (1.0 + a) * std::exp(-a);
     const double four = 4.0 * (std::asinh(39.6) - std::asinh(39.6 * 3.0 / 7.0));
     CHECK(double(at(mixture, STOKES_MIX_M, 0)) == Approx(one / (one + four)));
     for (unsigned row = STOKES_MIX_F_DENSE; row < STOKES_MIX_ROWS; ++row) CHECK(at(mixture, row, 1) == 1.0f);
 }
 
-TEST_CASE("a mixture of a medium that does not scatter reaches nowhere by single scattering",
-          "[distance_mixture]") {
-    const MediumMixture mixture =
-        make_medium_mixture({"ink", Spectrum::constant(0.0), Spectrum::constant(1.0)});
+TEST_CASE("a mixture of a medium that does not scatter reaches nowhere by single scattering", "[distance_mixture]") {
+    const MediumMixture mixture = make_medium_mixture({"ink", Spectrum::constant(0.0), Spectrum::constant(1.0)});
     CHECK(mixture.record.reach_s_mm == 0.0f);
     for (const float value : mixture.rows) CHECK(std::isfinite(value));
 }

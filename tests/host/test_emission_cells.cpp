@@ -53,10 +53,10 @@ TEST_CASE("cells partition the lights, whatever the samples", "[emission]") {
     const auto random = [](const EmissionSample& s) {
         return std::exp(8.0 * static_cast<double>(s.place[0] * s.place[3]));
     };
-    for (const EmissionCells& cells :
-         {EmissionCells::even(lights, 20000), EmissionCells::aimed(lights, samples_of(20000, spot), 0.1, 300, 20000),
-          EmissionCells::aimed(lights, samples_of(20000, random), 0.2, 300, 20000),
-          EmissionCells::aimed(lights, {}, 0.2, 300, 20000)}) {
+    for (const EmissionCells& cells : {EmissionCells::stratified(lights, 20000),
+                                       EmissionCells::aimed(lights, samples_of(20000, spot), 0.1, 300, 20000),
+                                       EmissionCells::aimed(lights, samples_of(20000, random), 0.2, 300, 20000),
+                                       EmissionCells::aimed(lights, {}, 0.2, 300, 20000)}) {
         double all = 0.0, shares = 0.0;
         for (std::size_t c = 0; c < cells.records().size(); ++c) {
             const EmissionCell& cell = cells.records()[c];
@@ -84,15 +84,15 @@ TEST_CASE("cells partition the lights, whatever the samples", "[emission]") {
 }
 
 TEST_CASE("even cells are the lights themselves", "[emission]") {
-    const EmissionCells cells = EmissionCells::even(lights, 1000000);
+    const EmissionCells cells = EmissionCells::stratified(lights, 1000000);
     REQUIRE(cells.records().size() == 2);
     CHECK(cells.shares()[0] == Approx(0.7).epsilon(1e-5));
     CHECK(cells.records()[0].probability == Approx(0.7f));
     CHECK(cells.records()[1].light == 1);
     CHECK(cells.records()[1].probability == Approx(0.3f));
     // With fewer than three photons a cell emission is random.
-    CHECK(EmissionCells::even(lights, 6).records().size() == 2);
-    CHECK(EmissionCells::even(lights, 5).records().empty());
+    CHECK(EmissionCells::stratified(lights, 6).records().size() == 2);
+    CHECK(EmissionCells::stratified(lights, 5).records().empty());
 }
 
 // The least variance is that of shares in proportion to the root of the mean square: nearly all photons in the spot, of
@@ -108,7 +108,7 @@ TEST_CASE("aimed photons go where the light comes from", "[emission]") {
         if (cell.light == 0 && std::abs(x) < 0.05 && std::abs(y) < 0.05) inside += cells.shares()[c];
     }
     CHECK(inside > 0.7);
-    CHECK(most <= 10.0 * 1.01);  // 1 / even_share, and what goes to least photons
+    CHECK(most <= 10.0 * 1.01);  // 1 / uniform_share, and what goes to least photons
     CHECK(cells.records().size() <= 300);
 }
 

@@ -10,8 +10,7 @@ using namespace stokes;
 
 namespace {
 
-void set_xyz(FilmImage& film, std::size_t pixel, const glm::dvec3& xyz,
-             Component component = Component::surface) {
+void set_xyz(FilmImage& film, std::size_t pixel, const glm::dvec3& xyz, Component component = Component::surface) {
     for (int c = 0; c < 3; ++c)
         film.xyz[static_cast<std::size_t>(component)][3 * pixel + static_cast<std::size_t>(c)] =
             static_cast<float>(xyz[c]);
@@ -27,8 +26,7 @@ FilmImage uniform(const glm::dvec3& rgb) {
 FilmImage ramp(double scale) {
     FilmImage film(40, 10);
     for (std::size_t i = 0; i < film.pixels(); ++i)
-        set_xyz(film, i,
-                xyz_of_rec709(glm::dvec3(1.0, 0.5, 0.2) * static_cast<double>(i + 1) * scale / 400.0));
+        set_xyz(film, i, xyz_of_rec709(glm::dvec3(1.0, 0.5, 0.2) * static_cast<double>(i + 1) * scale / 400.0));
     return film;
 }
 
@@ -37,9 +35,7 @@ glm::ivec3 byte_pixel(const Rgb8& image, std::size_t pixel) {
 }
 
 // Bytes follow from the header of develop.hpp and the sRGB function.
-int byte_of(double linear) {
-    return static_cast<int>(std::lround(255.0 * srgb_encode(linear)));
-}
+int byte_of(double linear) { return static_cast<int>(std::lround(255.0 * srgb_encode(linear))); }
 
 double hue_deg(const glm::dvec3& rgb) {
     const glm::dvec3 lab = oklab_of_rec709(rgb);

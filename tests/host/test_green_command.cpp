@@ -44,8 +44,7 @@ TEST_CASE("stokes tables says what it cannot do", "[green_command]") {
     const TemporaryFolder work;
     const std::string out = " -o \"" + work.file("x") + "\"";
     CHECK(run_tables("--green --eta 0.5" + out).code == 2);
-    CHECK_THAT(run_tables("--green --eta 0.5" + out).err,
-               Contains("expected a refractive index from 1 to 4"));
+    CHECK_THAT(run_tables("--green --eta 0.5" + out).err, Contains("expected a refractive index from 1 to 4"));
     CHECK_THAT(run_tables("--green --walks 0" + out).err, Contains("expected a number from 1"));
     CHECK_THAT(run_tables("scene.json --green" + out).err, Contains("expected a scene or --green, not both"));
     CHECK_THAT(run_tables(out).err, Contains("expected a scene file, or --green"));

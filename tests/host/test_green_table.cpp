@@ -118,8 +118,7 @@ TEST_CASE("smoothing keeps power laws and halves noise", "[green_table]") {
         for (const double rho : table.rho) table.h1.push_back(static_cast<float>(rho * rho));
     const GreenTable exact = table;
     smooth_green_rows(table);
-    for (std::size_t i = 0; i < exact.h1.size(); ++i)
-        REQUIRE(table.h1[i] == Approx(exact.h1[i]).epsilon(1e-5));
+    for (std::size_t i = 0; i < exact.h1.size(); ++i) REQUIRE(table.h1[i] == Approx(exact.h1[i]).epsilon(1e-5));
 
     // A single value that stands out keeps 17/35 of its logarithm in each direction.
     const std::size_t place = table.row(5, 20) + 60;
@@ -141,8 +140,7 @@ TEST_CASE("a written table reads back", "[green_table]") {
     REQUIRE(read.h1.size() == table.h1.size());
     double worst = 0.0;
     for (std::size_t i = 0; i < table.h1.size(); ++i)
-        if (table.h1[i] > 1e-20f)
-            worst = std::max(worst, std::abs(double(read.h1[i]) / double(table.h1[i]) - 1.0));
+        if (table.h1[i] > 1e-20f) worst = std::max(worst, std::abs(double(read.h1[i]) / double(table.h1[i]) - 1.0));
     CHECK(worst < 1.1e-3);  // four digits, and the row's scale
     for (std::size_t i = 0; i < table.u1.size(); ++i) CHECK(read.u1[i] == Approx(table.u1[i]).epsilon(1e-7));
     for (std::size_t z = 0; z < table.z.size(); ++z) {
@@ -158,16 +156,13 @@ TEST_CASE("bad table files are told apart", "[green_table]") {
     CHECK(complaint(text, "\"version\": 1", "\"version\": 2") == "table: version: expected 1");
     CHECK(complaint(text, "\"eta\": 1.2", "\"eta\": 0.5") == "table: eta: expected a number of at least 1");
     CHECK(complaint(text, "\"name\": \"z\"", "\"name\": \"depth\"") == "table: axes[1].name: expected \"z\"");
-    CHECK(complaint(text, "[0,0.003,", "[0,0.004,") ==
-          "table: axes[0].values[2]: expected logarithmic steps");
+    CHECK(complaint(text, "[0,0.003,", "[0,0.004,") == "table: axes[0].values[2]: expected logarithmic steps");
     CHECK(complaint(text, "[0,0.003,", "[0.001,0.003,") == "table: axes[0].values[0]: expected 0");
-    CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": ["),
-               Contains("table: u1: expected a list of 20 numbers"));
+    CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": ["), Contains("table: u1: expected a list of 20 numbers"));
     CHECK_THAT(complaint(text, "\"values\": [\n0,", "\"values\": [\n-1,"),
                Contains("table: values[0]: expected a finite number"));
     CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": [0.9,"), Contains("table: u1[0]: expected at most 1"));
-    CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": [0.2,"),
-               Contains("table: values: expected an integral"));
+    CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": [0.2,"), Contains("table: values: expected an integral"));
     CHECK_THAT(complaint(text, "]}\n", "\n"), Contains("not valid JSON"));
 
     const std::string path = folder.file("table.json.gz");
@@ -186,8 +181,7 @@ TEST_CASE("text survives compression, and bombs are refused", "[gzip]") {
     const std::string packed = compress_gzip(text);
     CHECK(packed.size() < 5000);
     CHECK((decompress_gzip(packed, "name", text.size() + 1) == text));
-    CHECK(input_error([&] { decompress_gzip(packed, "name", 1000); }) ==
-          "name: expected at most 1000 bytes of text");
+    CHECK(input_error([&] { decompress_gzip(packed, "name", 1000); }) == "name: expected at most 1000 bytes of text");
     CHECK(decompress_gzip(compress_gzip(""), "name", 10).empty());
 }
 
@@ -202,8 +196,7 @@ TEST_CASE("the shipped tables are in the program", "[green_table]") {
         for (const std::size_t a : {3u, 15u, 25u, 31u}) {
             const std::vector<double> total = escape.total(table.albedo[a]);
             for (std::size_t z = 0; z < table.z.size(); ++z)
-                CHECK(green_row_integral(table, a, z) + escape.unscattered()[z] ==
-                      Approx(total[z]).margin(1e-6));
+                CHECK(green_row_integral(table, a, z) + escape.unscattered()[z] == Approx(total[z]).margin(1e-6));
         }
     }
     CHECK_FALSE(std::filesystem::exists(folder.file("stokes")));

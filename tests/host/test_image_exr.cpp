@@ -113,8 +113,7 @@ TEST_CASE("a truncated EXR is an input error wherever it ends") {
         CHECK_THROWS_AS(read_exr(path), InputError);
     }
     put_file(path, whole.substr(0, whole.size() - 1));
-    CHECK_THROWS_WITH(read_exr(path),
-                      Catch::Contains("part.exr: not a readable OpenEXR file: unexpected end of file"));
+    CHECK_THROWS_WITH(read_exr(path), Catch::Contains("part.exr: not a readable OpenEXR file: unexpected end of file"));
 }
 
 TEST_CASE("a corrupt EXR is read or refused, never anything else") {
@@ -132,8 +131,7 @@ TEST_CASE("a corrupt EXR is read or refused, never anything else") {
         } catch (const InputError&) {
             ++refused;
         }
-        const auto values =
-            static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3;
+        const auto values = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3;
         for (const auto& [name, rgb] : image.layers) CHECK(rgb.size() == values);
     }
     CHECK(refused > 20);
@@ -142,8 +140,7 @@ TEST_CASE("a corrupt EXR is read or refused, never anything else") {
 TEST_CASE("what is no EXR file is an input error that says so") {
     const TemporaryFolder folder;
     put_file(folder.file("text.exr"), "not a picture");
-    CHECK_THROWS_WITH(read_exr(folder.file("none.exr")),
-                      Catch::Contains("none.exr: cannot read: No such file"));
+    CHECK_THROWS_WITH(read_exr(folder.file("none.exr")), Catch::Contains("none.exr: cannot read: No such file"));
     CHECK_THROWS_WITH(read_exr(folder.path()), Catch::Contains("cannot read: Is a directory"));
     CHECK_THROWS_AS(read_exr(folder.file("text.exr")), InputError);
 }

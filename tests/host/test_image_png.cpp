@@ -83,8 +83,7 @@ TEST_CASE("a PNG that cannot be written leaves nothing behind") {
         CHECK_THROWS_AS(write_png(folder.file("a.png"), noise_image(64, 64)), RunError);
     }
     CHECK_THROWS_WITH(write_png(folder.file("a.png"), Rgb8{}), Catch::Contains("a.png: cannot write: "));
-    CHECK_THROWS_WITH(write_png(folder.file("a.png"), Rgb8{2, 2, {0, 0, 0}}),
-                      Catch::Contains("2 x 2 pixels"));
+    CHECK_THROWS_WITH(write_png(folder.file("a.png"), Rgb8{2, 2, {0, 0, 0}}), Catch::Contains("2 x 2 pixels"));
     CHECK(folder.names().empty());
 }
 

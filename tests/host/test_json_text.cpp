@@ -6,9 +6,9 @@
 using namespace stokes;
 
 TEST_CASE("text for JSON is quoted so that it reads back", "[json]") {
-    for (const std::string& text : {std::string(), std::string("plain"), std::string("a\"b\\c\n\t\x01z"),
-                                    std::string("nul\0in", 6), std::string("\u00e9\u20ac\U0001F30D"),
-                                    std::string("\u07ff\u0800\ud7ff\ue000\uffff\U00010000\U0010ffff")}) {
+    for (const std::string& text :
+         {std::string(), std::string("plain"), std::string("a\"b\\c\n\t\x01z"), std::string("nul\0in", 6),
+          std::string("\u00e9\u20ac\U0001F30D"), std::string("\u07ff\u0800\ud7ff\ue000\uffff\U00010000\U0010ffff")}) {
         CAPTURE(text);
         CHECK(nlohmann::json::parse(json_quoted(text)).get<std::string>() == text);
     }
@@ -34,6 +34,5 @@ TEST_CASE("bytes that are not UTF-8 become U+FFFD", "[json]") {
     }
     for (int a = 0; a < 256; ++a)
         for (int b = 0; b < 256; ++b)
-            CHECK(nlohmann::json::accept(
-                json_quoted(std::string{static_cast<char>(a), static_cast<char>(b), '\x80'})));
+            CHECK(nlohmann::json::accept(json_quoted(std::string{static_cast<char>(a), static_cast<char>(b), '\x80'})));
 }

@@ -51,15 +51,13 @@ TEST_CASE("Bad JSON is one line with file and line") {
         {"[\n\"tab\there\"]", "f.json:2: JSON syntax error"},
         {"[\n\"\xFF\"]", "f.json:2: JSON syntax error"},
         {"[1] // remark", "f.json:1: JSON syntax error"},
-        {"{\"a\": 1,\n \"b\": {\"x\": 1,\n\"y\": 2, \"x\": 3}}",
-         "f.json:3: key \"x\" given twice, first in line 2"},
+        {"{\"a\": 1,\n \"b\": {\"x\": 1,\n\"y\": 2, \"x\": 3}}", "f.json:3: key \"x\" given twice, first in line 2"},
         {std::string(33, '['), "f.json:1: values nested deeper than 32"},
         {std::string(1'000'000, '['), "f.json:1: values nested deeper than 32"},
     };
     for (const Case& c : cases) {
         INFO(c.text.substr(0, 60));
-        CHECK_THAT(input_error([&] { parse_json(c.text, "f.json"); }),
-                   Catch::Matchers::StartsWith(c.expected));
+        CHECK_THAT(input_error([&] { parse_json(c.text, "f.json"); }), Catch::Matchers::StartsWith(c.expected));
     }
     CHECK_NOTHROW(parse_json(std::string(32, '[') + std::string(32, ']'), "f.json"));
 }
@@ -69,8 +67,7 @@ TEST_CASE("Every shortened JSON text is an error and nothing worse") {
     CHECK_NOTHROW(parse_json(whole, "f.json"));
     for (std::size_t length = 0; length < whole.size(); ++length) {
         INFO(length);
-        CHECK(input_error([&] { parse_json(whole.substr(0, length), "f.json"); }).substr(0, 9) ==
-              "f.json:1:");
+        CHECK(input_error([&] { parse_json(whole.substr(0, length), "f.json"); }).substr(0, 9) == "f.json:1:");
     }
 }
 
@@ -85,13 +82,11 @@ TEST_CASE("A cursor names the key path, what it expected and what it found") {
     CHECK(input_error([&] {
               root.at("n").number({0, 1, true});
           }) == "f.json:1: n: expected a number in (0, 1], got 1.5");
-    CHECK(input_error([&] { root.at("n").integer(0, 9); }) ==
-          "f.json:1: n: expected an integer in [0, 9], got 1.5");
+    CHECK(input_error([&] { root.at("n").integer(0, 9); }) == "f.json:1: n: expected an integer in [0, 9], got 1.5");
     CHECK(input_error([&] {
               root.at("s").number({0, 1});
           }) == "f.json:1: s: expected a number in [0, 1], got \"word\"");
-    CHECK(input_error([&] { root.at("s").boolean(); }) ==
-          "f.json:1: s: expected true or false, got \"word\"");
+    CHECK(input_error([&] { root.at("s").boolean(); }) == "f.json:1: s: expected true or false, got \"word\"");
     CHECK(input_error([&] {
               root.at("s").choice({"sword", "shield"});
           }) == "f.json:1: s: expected \"sword\" or \"shield\", got \"word\"; did you mean \"sword\"?");

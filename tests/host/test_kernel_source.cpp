@@ -49,11 +49,9 @@ TEST_CASE("every file is included once, where it is first asked for", "[kernel_s
     kernels.put("shared/unit.h", "// unit\n");
     kernels.put("shared/pair.h", "#include \"unit.h\"\n// pair\n");  // a sibling, by its bare name
     kernels.put("lib/twice.clh", "#include \"shared/pair.h\"\n#include \"shared/unit.h\"\n// twice\n");
-    const std::string text =
-        expand_kernel_source("top.cl", "#include \"lib/twice.clh\"\n  #include \"shared/unit.h\"\n// top\n",
-                             kernels.folder.path());
-    for (const char* word : {"// unit\n", "// pair\n", "// twice\n", "// top\n"})
-        CHECK(occurrences(text, word) == 1);
+    const std::string text = expand_kernel_source(
+        "top.cl", "#include \"lib/twice.clh\"\n  #include \"shared/unit.h\"\n// top\n", kernels.folder.path());
+    for (const char* word : {"// unit\n", "// pair\n", "// twice\n", "// top\n"}) CHECK(occurrences(text, word) == 1);
     CHECK(text.find("// unit") < text.find("// pair"));
     CHECK(text.find("// pair") < text.find("// twice"));
     CHECK(text.find("// twice") < text.find("// top"));
@@ -64,8 +62,7 @@ TEST_CASE("a file that includes itself ends", "[kernel_source]") {
     const KernelFolder kernels;
     kernels.put("lib/a.clh", "#include \"lib/b.clh\"\n// a\n");
     kernels.put("lib/b.clh", "#include \"lib/a.clh\"\n// b\n");
-    const std::string text =
-        expand_kernel_source("top.cl", "#include \"lib/a.clh\"\n", kernels.folder.path());
+    const std::string text = expand_kernel_source("top.cl", "#include \"lib/a.clh\"\n", kernels.folder.path());
     CHECK(occurrences(text, "// a\n") == 1);
     CHECK(occurrences(text, "// b\n") == 1);
 }
@@ -99,8 +96,7 @@ TEST_CASE("an include or a kernel that is not there is an error that names it", 
 TEST_CASE("kernels travel in the program", "[kernel_source]") {
     CHECK_THAT(read_kernel_file("lib/rng.clh", ""), Catch::Contains("philox4x32"));
     CHECK_THROWS_AS(read_kernel_file("lib/absent.clh", ""), RunError);
-    const std::string text =
-        expand_kernel_source("emit_photons.cl", read_kernel_file("emit_photons.cl", ""), "");
+    const std::string text = expand_kernel_source("emit_photons.cl", read_kernel_file("emit_photons.cl", ""), "");
     CHECK(occurrences(text, "typedef struct Ray {") == 1);
     CHECK(text.find("#include \"") == std::string::npos);
 }

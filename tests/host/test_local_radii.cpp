@@ -94,7 +94,8 @@ TEST_CASE("what differs in material or normal is not averaged", "[local_radii]")
     }
 }
 
-TEST_CASE("pixels that saw a reflection take their neighbours' radius, those that see nothing have none", "[local_radii]") {
+TEST_CASE("pixels that saw a reflection take their neighbours' radius, those that see nothing have none",
+          "[local_radii]") {
     Picture picture = even_picture(5.0);
     GatherPoint& mirrored = picture.points[100];
     mirrored.reflected = 1;

@@ -57,9 +57,8 @@ TEST_CASE("A mask covers the dark texels and their common edges, and nothing of 
                 int dark_around = 0;
                 for (const double dx : {-hair, hair})
                     for (const double dz : {-hair, hair}) dark_around += is_dark(x + dx, z + dz) ? 1 : 0;
-                const bool covered =
-                    std::any_of(rectangles.begin(), rectangles.end(),
-                                [&](const Rectangle& r) { return r.holds(x - 11.5, z - 8.5); });
+                const bool covered = std::any_of(rectangles.begin(), rectangles.end(),
+                                                 [&](const Rectangle& r) { return r.holds(x - 11.5, z - 8.5); });
                 if (dark_around == 4) wrong += !covered;
                 if (dark_around < 4 && i % 8 != 0 && j % 8 != 0) wrong += covered;
                 if (dark_around == 0) wrong += covered;

@@ -30,8 +30,7 @@ void put(std::string& text, T value, bool big_endian) {
 
 // The same square, with properties and elements that a reader has to step over.
 std::string binary_square(bool big_endian) {
-    std::string text = "ply\r\nformat binary_" + std::string(big_endian ? "big" : "little") +
-                       "_endian 1.0\r\n" +
+    std::string text = "ply\r\nformat binary_" + std::string(big_endian ? "big" : "little") + "_endian 1.0\r\n" +
                        "element material 1\r\nproperty list ushort float values\r\n"
                        "element vertex 4\r\nproperty double x\r\nproperty short label\r\nproperty float y\r\n"
                        "property float z\r\nelement face 1\r\nproperty int group\r\n"
@@ -94,14 +93,12 @@ TEST_CASE("Bad PLY is one line with file and place") {
         {"format ascii 1.0", "format text 1.0", "m.ply:2: expected format ascii, binary_little_endian or"},
         {"ascii 1.0", "ascii 2.0", "m.ply:2: expected version 1.0, got \"2.0\""},
         {"format ascii 1.0\n", "", "m.ply:10: the header has no format line"},
-        {"element vertex 4", "element vertex -4",
-         "m.ply:4: expected an element's name and count, got \"-4\""},
+        {"element vertex 4", "element vertex -4", "m.ply:4: expected an element's name and count, got \"-4\""},
         {"element vertex 4", "element vertex", "m.ply:4: expected an element's name and count"},
         {"element vertex 4", "element vertex 99999999999999999999", "m.ply:4: expected an element's name"},
         {"element vertex 4", "element vertex 4000000000000000000",
          "m.ply: the header promises 4000000000000000000 of element vertex, but the file is too short"},
-        {"element face 1", "element face 1000000000",
-         "m.ply: the header promises 1000000000 of element face"},
+        {"element face 1", "element face 1000000000", "m.ply: the header promises 1000000000 of element face"},
         {"element vertex 4\n", "", "m.ply:4: a property before any element"},
         {"property float x", "property half x", "m.ply:5: unknown property type \"half\""},
         {"property float x", "property float", "m.ply:5: a property without a name"},
@@ -129,10 +126,9 @@ TEST_CASE("Bad PLY is one line with file and place") {
     }
     CHECK_THAT(input_error([&] { parse_ply("ply\nformat ascii 1.0\n", "m.ply"); }),
                StartsWith("m.ply:3: the header has no end_header"));
-    CHECK_THAT(input_error([&] {
-                   parse_ply("ply\nformat ascii 1.0\nelement x 9000000000000000000\nend_header\n", "m.ply");
-               }),
-               StartsWith("m.ply:4: element x has no properties"));
+    CHECK_THAT(
+        input_error([&] { parse_ply("ply\nformat ascii 1.0\nelement x 9000000000000000000\nend_header\n", "m.ply"); }),
+        StartsWith("m.ply:4: element x has no properties"));
 }
 
 TEST_CASE("Binary PLY that is cut short or damaged is an error and nothing worse") {
@@ -240,18 +236,16 @@ TEST_CASE("OBJ texture coordinates follow the corners, v counted from the top") 
     for (const char* face :
          {"f 1 2 3\n", "f 1/1 2/1 3\n", "f 1/1 2/3 3/1\n", "f 1//1 2//1 3//1\n", "f 1/1 2/-3 3/1\n"}) {
         INFO(face);
-        CHECK(
-            parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\n" + std::string(face), "m.obj").uv.empty());
+        CHECK(parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\n" + std::string(face), "m.obj").uv.empty());
     }
     CHECK(parse_obj(vertices + "f 1/1 2/1 3/1\n", "m.obj").uv.empty());
 }
 
 TEST_CASE("PLY texture coordinates belong to the vertices, by any of their usual names") {
-    for (const auto& [u, v] :
-         {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")}) {
+    for (const auto& [u, v] : {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")}) {
         const auto text = [&](const std::string& last) {
-            return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float " +
-                   std::string(v) + "\nproperty float y\nproperty float z\nproperty float " + u +
+            return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float " + std::string(v) +
+                   "\nproperty float y\nproperty float z\nproperty float " + u +
                    "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
                    "0 0 0 0 0\n1 0.25 0 0 1\n1 1 1 0 " +
                    last + "\n3 0 1 2\n";

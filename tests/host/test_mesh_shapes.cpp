@@ -37,9 +37,7 @@ bool all_face_away_from(const Mesh& mesh, const glm::dvec3& inside) {
     return true;
 }
 
-double polygon_area(int sides, double radius) {
-    return 0.5 * sides * radius * radius * std::sin(2 * pi / sides);
-}
+double polygon_area(int sides, double radius) { return 0.5 * sides * radius * radius * std::sin(2 * pi / sides); }
 
 }  // namespace
 

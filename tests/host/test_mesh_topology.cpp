@@ -66,13 +66,9 @@ Scene scene_of(const std::vector<Mesh>& meshes) {
     return scene;
 }
 
-BodyTopology topology_of(const std::vector<Mesh>& meshes) {
-    return body_topology(scene_of(meshes), 0);
-}
+BodyTopology topology_of(const std::vector<Mesh>& meshes) { return body_topology(scene_of(meshes), 0); }
 
-double thickness_of(const std::vector<Mesh>& meshes) {
-    return median_thickness_mm(scene_of(meshes), 0);
-}
+double thickness_of(const std::vector<Mesh>& meshes) { return median_thickness_mm(scene_of(meshes), 0); }
 
 }  // namespace
 
@@ -202,8 +198,8 @@ TEST_CASE("A triangle too few or the wrong way round opens a mesh, and the place
 TEST_CASE("Sheets in one plane that face one way are flat, anywhere and however large") {
     CHECK(topology_of({make_rectangle(4, 6)}).kind == BodyKind::flat);
     CHECK(topology_of({moved(make_disk(300.0), askew())}).kind == BodyKind::flat);
-    CHECK(topology_of({moved(make_rectangle(4, 6),
-                             glm::translate(glm::dmat4(1.0), glm::dvec3(9000, 7000, 100)) * askew())})
+    CHECK(topology_of(
+              {moved(make_rectangle(4, 6), glm::translate(glm::dmat4(1.0), glm::dvec3(9000, 7000, 100)) * askew())})
               .kind == BodyKind::flat);
     const BodyTopology two = topology_of({make_rectangle(4, 6), lifted(make_disk(1.0), {10, 0, 0})});
     CHECK(two.kind == BodyKind::flat);
@@ -212,8 +208,7 @@ TEST_CASE("Sheets in one plane that face one way are flat, anywhere and however 
 }
 
 TEST_CASE("Steps, bends and sheets that face both ways are not flat") {
-    CHECK(topology_of({make_rectangle(4, 6), lifted(make_rectangle(4, 6), {9, 0.01, 0})}).kind ==
-          BodyKind::open);
+    CHECK(topology_of({make_rectangle(4, 6), lifted(make_rectangle(4, 6), {9, 0.01, 0})}).kind == BodyKind::open);
     CHECK(topology_of({make_rectangle(4, 6), lifted(inside_out(make_rectangle(1, 1)), {9, 0, 0})}).kind ==
           BodyKind::open);
     Mesh bent = make_rectangle(4, 6);
@@ -236,8 +231,7 @@ TEST_CASE("The shipped dragon and bunny are closed") {
     }
 }
 
-TEST_CASE(
-    "Thickness: of a sheet its own, of a ball and a rod the diameter, of a shell the wall, however turned") {
+TEST_CASE("Thickness: of a sheet its own, of a ball and a rod the diameter, of a shell the wall, however turned") {
     CHECK(thickness_of({moved(make_box({40, 3, 50}), askew())}) == Approx(3).epsilon(1e-5));
     CHECK(thickness_of({moved(make_sphere(10.0), askew())}) == Approx(20).epsilon(2e-3));
     CHECK(thickness_of({moved(make_cylinder(2.0, 80.0, 128), askew())}) == Approx(4).epsilon(2e-3));
@@ -250,8 +244,7 @@ TEST_CASE(
 TEST_CASE("Thickness: without limit where there is no other side") {
     CHECK(std::isinf(thickness_of({make_rectangle(4, 6)})));
     CHECK(std::isinf(thickness_of({inside_out(make_sphere(10.0))})));
-    CHECK(thickness_of({make_rectangle(4, 6), lifted(inside_out(make_rectangle(4, 6)), {0, -2, 0})}) ==
-          Approx(2));
+    CHECK(thickness_of({make_rectangle(4, 6), lifted(inside_out(make_rectangle(4, 6)), {0, -2, 0})}) == Approx(2));
     CHECK(std::isinf(thickness_of({})));
 }
 
@@ -269,8 +262,7 @@ TEST_CASE("Walking needs closed or flat bodies") {
     box.triangles.push_back({1, 3, 7});
     CHECK_THAT(error({box}), Contains(expects + "7 edges without a neighbour, one at ("));
     CHECK(error({inside_out(make_sphere(3.0))}) == expects + "one that faces inward");
-    CHECK(error({make_rectangle(1, 2), inside_out(make_rectangle(1, 2))}) ==
-          expects + "one without a volume");
+    CHECK(error({make_rectangle(1, 2), inside_out(make_rectangle(1, 2))}) == expects + "one without a volume");
 }
 
 TEST_CASE("Walking asks nothing of bodies without subsurface light") {

@@ -9,9 +9,8 @@ TEST_CASE("--no-tables renders model paper without tables, and says so", "[no_ta
     const TemporaryFolder folder;
     for (const bool tables : {true, false}) {
         const std::string file = folder.file(tables ? "with.json" : "without.json");
-        const Outcome outcome =
-            run_stokes("render " + sphere_scene + small_render + "--quiet --transport paper " +
-                       (tables ? "" : "--no-tables ") + "--stats " + file);
+        const Outcome outcome = run_stokes("render " + sphere_scene + small_render + "--quiet --transport paper " +
+                                           (tables ? "" : "--no-tables ") + "--stats " + file);
         CAPTURE(outcome.err);
         REQUIRE(outcome.code == 0);
         const auto stats = nlohmann::json::parse(file_content(file));
@@ -24,12 +23,10 @@ TEST_CASE("--no-tables renders model paper without tables, and says so", "[no_ta
 TEST_CASE("--no-tables is refused with the other models", "[no_tables]") {
     const TemporaryFolder folder;
     for (const std::string transport : {"conserving", "walk"}) {
-        const Outcome outcome =
-            run_stokes("render " + sphere_scene + small_render + "--no-tables --transport " + transport +
-                       " --stats " + folder.file("a.json"));
+        const Outcome outcome = run_stokes("render " + sphere_scene + small_render + "--no-tables --transport " +
+                                           transport + " --stats " + folder.file("a.json"));
         CHECK(outcome.code == 2);
-        CHECK(outcome.err ==
-              "stokes: --no-tables: expected transport \"paper\", got \"" + transport + "\"\n");
+        CHECK(outcome.err == "stokes: --no-tables: expected transport \"paper\", got \"" + transport + "\"\n");
         CHECK(folder.names().empty());
     }
 }

@@ -11,9 +11,7 @@ using namespace stokes;
 
 namespace {
 
-Spectrum ramp(double at_300, double at_780) {
-    return {{300.0, 780.0}, {at_300, at_780}, Outside::zero};
-}
+Spectrum ramp(double at_300, double at_780) { return {{300.0, 780.0}, {at_300, at_780}, Outside::zero}; }
 
 // A surface light, a beam and a dark lamp; two materials and a fluorophore.
 Scene spectral_scene() {
@@ -71,13 +69,13 @@ TEST_CASE("the photons of a light carry its flux in the mean", "[pass_spectra]")
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         for (std::size_t k = 0; k < set.size(); ++k) {
             const double flux = scene.lights[i].flux.at(set[k]);
-            CHECK(static_cast<double>(pass.photon_flux[i].v[k]) * p[i] * photons ==
-                  Approx(flux).epsilon(1e-6));
+            CHECK(static_cast<double>(pass.photon_flux[i].v[k]) * p[i] * photons == Approx(flux).epsilon(1e-6));
         }
 }
 
 // A diffuse emitter of flux Phi and area A has radiance Phi / (pi A), a beam of section A the irradiance Phi / A.
-TEST_CASE("the radiance of an emitter is its flux over pi and its area, that of a beam its irradiance", "[pass_spectra]") {
+TEST_CASE("the radiance of an emitter is its flux over pi and its area, that of a beam its irradiance",
+          "[pass_spectra]") {
     Scene scene = spectral_scene();
     const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100);
     scene.lights[1].section = BeamSection::disk;
@@ -101,9 +99,7 @@ TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
     const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 1, 100);
     REQUIRE(pass.rows.size() == layout.row_count());
     const WavelengthSet set = draw_wavelengths(5, 1, 300, 780);
-    const auto value = [&](std::uint32_t row, std::size_t k) {
-        return static_cast<double>(pass.rows[row].v[k]);
-    };
+    const auto value = [&](std::uint32_t row, std::size_t k) { return static_cast<double>(pass.rows[row].v[k]); };
     for (std::size_t k = 0; k < set.size(); ++k) {
         CHECK(value(0, k) == 0.5);
         CHECK(value(1, k) == Approx(scene.materials[1].reflectance.at(set[k])).epsilon(1e-6));
@@ -113,8 +109,7 @@ TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
         const auto expected = reradiation_rows(dye, Transport::paper, set, 32.0);
         for (std::uint32_t ex = 0; ex < STOKES_WAVELENGTHS; ++ex) {
             CHECK(value(layout.excitation_row(f), ex) == Approx(dye.excitation.at(set[ex])).epsilon(1e-6));
-            CHECK(std::memcmp(&pass.rows[layout.reradiation_row(f) + ex], &expected[ex], sizeof(Flux16)) ==
-                  0);
+            CHECK(std::memcmp(&pass.rows[layout.reradiation_row(f) + ex], &expected[ex], sizeof(Flux16)) == 0);
         }
     }
 }
@@ -167,8 +162,7 @@ TEST_CASE("the constants of a pass are its own", "[pass_spectra]") {
     const Scene scene = spectral_scene();
     const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 12345);
     const WavelengthSet set = draw_wavelengths(5, 3, 300, 780);
-    for (std::size_t k = 0; k < set.size(); ++k)
-        CHECK(pass.constants.lambda_nm[k] == static_cast<float>(set[k]));
+    for (std::size_t k = 0; k < set.size(); ++k) CHECK(pass.constants.lambda_nm[k] == static_cast<float>(set[k]));
     CHECK(pass.constants.seed == 5);
     CHECK(pass.constants.pass == 3);
     CHECK(pass.constants.photons == 12345);

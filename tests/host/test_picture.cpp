@@ -13,13 +13,9 @@ using Catch::Matchers::StartsWith;
 namespace {
 
 // IEC 61966-2-1.
-double from_srgb(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
+double from_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
-std::string bytes_of(const std::vector<int>& values) {
-    return {values.begin(), values.end()};
-}
+std::string bytes_of(const std::vector<int>& values) { return {values.begin(), values.end()}; }
 
 }  // namespace
 
@@ -32,22 +28,19 @@ TEST_CASE("Luminance is linear: sRGB decoded, then weighted by the primaries' ow
     CHECK(grey.luminance[3] == 1.0f);
 
     const Picture colour = parse_png(
-        png_bytes(4, {bytes_of({255, 0, 0, 0, 255, 0, 0, 0, 255, 90, 180, 30})}, {PNG_COLOR_TYPE_RGB}),
-        "c.png");
+        png_bytes(4, {bytes_of({255, 0, 0, 0, 255, 0, 0, 0, 255, 90, 180, 30})}, {PNG_COLOR_TYPE_RGB}), "c.png");
     CHECK(colour.luminance[0] == Approx(0.2126));
     CHECK(colour.luminance[1] == Approx(0.7152));
     CHECK(colour.luminance[2] == Approx(0.0722));
-    CHECK(colour.luminance[3] == Approx(0.2126 * from_srgb(90.0 / 255) + 0.7152 * from_srgb(180.0 / 255) +
-                                        0.0722 * from_srgb(30.0 / 255)));
+    CHECK(colour.luminance[3] ==
+          Approx(0.2126 * from_srgb(90.0 / 255) + 0.7152 * from_srgb(180.0 / 255) + 0.0722 * from_srgb(30.0 / 255)));
 
-    const Picture fine =
-        parse_png(png_bytes(1, {bytes_of({0x80, 0x40})}, {PNG_COLOR_TYPE_GRAY, 16}), "f.png");
+    const Picture fine = parse_png(png_bytes(1, {bytes_of({0x80, 0x40})}, {PNG_COLOR_TYPE_GRAY, 16}), "f.png");
     CHECK(fine.luminance[0] == Approx(from_srgb(0x8040 / 65535.0)).epsilon(1e-6));
 }
 
 TEST_CASE("Opacity is read from alpha channels and palettes, and shows the background") {
-    const Picture grey =
-        parse_png(png_bytes(2, {bytes_of({255, 51, 0, 255})}, {PNG_COLOR_TYPE_GRAY_ALPHA}), "a.png");
+    const Picture grey = parse_png(png_bytes(2, {bytes_of({255, 51, 0, 255})}, {PNG_COLOR_TYPE_GRAY_ALPHA}), "a.png");
     CHECK(grey.opacity[0] == Approx(0.2));
     CHECK(grey.opacity[1] == 1.0f);
     CHECK(grey.luminance_over(0.0f, 0) == Approx(0.2));
@@ -85,13 +78,11 @@ TEST_CASE("Files that are no sound PNG are refused in one line") {
                    StartsWith("x.png: not a sound PNG file: "));
     std::string damaged = sound;
     damaged[damaged.size() - 20] ^= 1;
-    CHECK_THAT(input_error([&] { parse_png(damaged, "x.png"); }),
-               StartsWith("x.png: not a sound PNG file: "));
+    CHECK_THAT(input_error([&] { parse_png(damaged, "x.png"); }), StartsWith("x.png: not a sound PNG file: "));
 }
 
 TEST_CASE("Bytes changed at random are read or refused, never more") {
-    const std::string sound =
-        png_bytes(7, {"abcdefgabcdefgabcdefg", "gfedcbagfedcbagfedcba"}, {PNG_COLOR_TYPE_RGB});
+    const std::string sound = png_bytes(7, {"abcdefgabcdefgabcdefg", "gfedcbagfedcbagfedcba"}, {PNG_COLOR_TYPE_RGB});
     std::mt19937 random(6);
     int refused = 0;
     for (int i = 0; i < 2000; ++i) {

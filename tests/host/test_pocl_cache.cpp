@@ -11,8 +11,8 @@ TEST_CASE("a folder for compiled kernels that is not there yet is made", "[devic
     for (const std::string name : {"XDG_CACHE_HOME", "POCL_CACHE_DIR"}) {
         const TemporaryFolder temporary;
         const std::string cache = folder.file(name + "/deep/cache");
-        const Outcome outcome = run_stokes(
-            "devices", "env -u POCL_CACHE_DIR " + name + "=" + cache + " TMPDIR=" + temporary.path());
+        const Outcome outcome =
+            run_stokes("devices", "env -u POCL_CACHE_DIR " + name + "=" + cache + " TMPDIR=" + temporary.path());
         CAPTURE(name, outcome.err);
         CHECK(outcome.code == 0);
         CHECK(outcome.err.empty());
@@ -29,8 +29,7 @@ TEST_CASE("where it cannot be made, every run uses one folder of the user's own"
     for (int run = 0; run < 2; ++run) {
         const Outcome outcome = run_stokes("devices", environment);
         CHECK(outcome.code == 0);
-        CHECK(outcome.err.find("cannot be written; they are kept in " + temporary.path()) !=
-              std::string::npos);
+        CHECK(outcome.err.find("cannot be written; they are kept in " + temporary.path()) != std::string::npos);
     }
     const std::string own = "stokes-pocl-" + std::to_string(::getuid());
     REQUIRE(temporary.names() == std::vector<std::string>{own});

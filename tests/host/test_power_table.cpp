@@ -59,8 +59,7 @@ TEST_CASE("media that diverge or make no sense are refused by name and wavelengt
                       Contains("medium \"jelly\" at 300 nm") && Contains("sigma_t"));
     CHECK_THROWS_AS(make_single_table(constant_medium(-1.0, 2.0)), InputError);
     CHECK_THROWS_AS(make_single_table(constant_medium(1.0, std::nan(""))), InputError);
-    CHECK_THROWS_AS(make_multiple_table(constant_medium(std::numeric_limits<double>::infinity(), 0.0)),
-                    InputError);
+    CHECK_THROWS_AS(make_multiple_table(constant_medium(std::numeric_limits<double>::infinity(), 0.0)), InputError);
 
     // Zero outside of its samples: the first wavelength of the grid beyond them is named.
     MediumSpectra cut = constant_medium(1.0, 0.0);
@@ -112,7 +111,7 @@ TEST_CASE("the device layout is [row][r][lambda]", "[power_table]") {
             for (std::size_t lambda = 0; lambda < 2; ++lambda)
                 CHECK(layout[(row * 4 + r) * 2 + lambda] ==
                       static_cast<float>(table.values[(r * 3 + row) * 2 + lambda]));
-    const EvenAxis wavelengths = device_wavelengths(table);
+    const UniformAxis wavelengths = device_wavelengths(table);
     CHECK(wavelengths.count == 2);
     CHECK(wavelengths.first == 400.0);
     CHECK(wavelengths.step == 100.0);
@@ -120,8 +119,7 @@ TEST_CASE("the device layout is [row][r][lambda]", "[power_table]") {
     CHECK(table_shape(make_multiple_table(medium, small_grid())).row_count == 1u);
     TableGrid uneven = small_grid();
     uneven.r_mm[1] = 0.6;
-    CHECK_THROWS_WITH(table_shape(make_single_table(medium, uneven)),
-                      Contains("axis r is not evenly spaced"));
+    CHECK_THROWS_WITH(table_shape(make_single_table(medium, uneven)), Contains("axis r is not evenly spaced"));
     uneven.r_mm = {0.0};
     CHECK_THROWS_WITH(table_shape(make_single_table(medium, uneven)), Contains("at least 2"));
 }
@@ -151,7 +149,8 @@ TEST_CASE("the sampler holds the mean over all wavelengths and its trapezoidal i
         for (std::size_t r = 1; r < 4; ++r) squares += 0.25 * (mean[r - 1] * mean[r - 1] + mean[r] * mean[r]);
         for (std::size_t r = 0; r < 4; ++r) {
             const std::size_t i = row * 4 + r;
-            CHECK(sampler.weighted_rows[i] == Approx(0.1 * mean[r] / total + 0.9 * mean[r] * mean[r] / squares).epsilon(1e-5));
+            CHECK(sampler.weighted_rows[i] ==
+                  Approx(0.1 * mean[r] / total + 0.9 * mean[r] * mean[r] / squares).epsilon(1e-5));
             if (r > 0) integral += 0.25 * (sampler.weighted_rows[i - 1] + sampler.weighted_rows[i]);
             CHECK(sampler.weighted_cumulative_rows[i] == Approx(integral).epsilon(1e-5));
         }

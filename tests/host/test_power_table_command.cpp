@@ -12,8 +12,8 @@ namespace {
 
 // Runs `stokes tables SCENE -o FOLDER`; its standard output and error go to files in the log folder.
 int run_tables(const std::string& scene, const std::string& folder, const TemporaryFolder& log) {
-    const std::string command = std::string("\"") + STOKES_BINARY + "\" tables \"" + scene + "\" -o \"" +
-                                folder + "\" >\"" + log.file("out") + "\" 2>\"" + log.file("err") + "\"";
+    const std::string command = std::string("\"") + STOKES_BINARY + "\" tables \"" + scene + "\" -o \"" + folder +
+                                "\" >\"" + log.file("out") + "\" 2>\"" + log.file("err") + "\"";
     return WEXITSTATUS(std::system(command.c_str()));
 }
 
@@ -26,12 +26,11 @@ const std::string lamp_and_box = R"("lights": [{"type": "disk", "center_mm": [0,
 
 TEST_CASE("stokes tables writes the three tables of each translucent material", "[power_table_command]") {
     const TemporaryFolder work, log;
-    put_file(
-        work.file("jelly.json"),
-        camera +
-            R"("media": {"gel": {"sigma_s_per_mm": 0.8, "sigma_a_per_mm": 0.1, "eta": 1.4, "dipole_eta": 1.4}},
+    put_file(work.file("jelly.json"),
+             camera +
+                 R"("media": {"gel": {"sigma_s_per_mm": 0.8, "sigma_a_per_mm": 0.1, "eta": 1.4, "dipole_eta": 1.4}},
                "materials": {"jelly": {"type": "translucent", "medium": "gel"}},)" +
-            lamp_and_box);
+                 lamp_and_box);
     const std::string folder = work.file("new/tables");
     const int code = run_tables(work.file("jelly.json"), folder, log);
     CAPTURE(file_content(log.file("err")));
@@ -52,16 +51,15 @@ TEST_CASE("stokes tables writes the three tables of each translucent material", 
 TEST_CASE("stokes tables ends with 2 for scenes it cannot use and 1 for folders it cannot make",
           "[power_table_command]") {
     const TemporaryFolder work, log;
-    put_file(work.file("plain.json"),
-             camera + R"("materials": {"jelly": {"type": "black"}},)" + lamp_and_box);
+    put_file(work.file("plain.json"), camera + R"("materials": {"jelly": {"type": "black"}},)" + lamp_and_box);
     CHECK(run_tables(work.file("plain.json"), work.file("t"), log) == 2);
     CHECK_THAT(file_content(log.file("err")), Contains("no translucent material"));
     CHECK(run_tables(work.file("none.json"), work.file("t"), log) == 2);
 
-    put_file(work.file("clear.json"),
-             camera + R"("media": {"void": {"sigma_s_per_mm": 0, "sigma_a_per_mm": 0, "eta": 1.4}},
+    put_file(work.file("clear.json"), camera +
+                                          R"("media": {"void": {"sigma_s_per_mm": 0, "sigma_a_per_mm": 0, "eta": 1.4}},
                "materials": {"jelly": {"type": "translucent", "medium": "void"}},)" +
-                 lamp_and_box);
+                                          lamp_and_box);
     CHECK(run_tables(work.file("clear.json"), work.file("t"), log) == 2);
     CHECK_THAT(file_content(log.file("err")), Contains("void"));
     CHECK(work.names() == std::vector<std::string>{"clear.json", "plain.json"});

@@ -19,15 +19,12 @@ struct Dye {
     explicit Dye(const TemporaryFolder& folder) {
         put_file(folder.file("e.csv"), "# excitation\nwavelength_nm,E\n300,1\n450,0.8\n520,0\n");
         put_file(folder.file("f.csv"), "wavelength_nm,none,F\n400,0,0\n450,0,1\n520,0,0\n");
-        flags = " --fraction 0.5 --excitation " + folder.file("e.csv") + " --emission " +
-                folder.file("f.csv") + ":F ";
+        flags = " --fraction 0.5 --excitation " + folder.file("e.csv") + " --emission " + folder.file("f.csv") + ":F ";
     }
     std::string flags;
 };
 
-nlohmann::json json_of(const std::string& path) {
-    return nlohmann::json::parse(file_content(path));
-}
+nlohmann::json json_of(const std::string& path) { return nlohmann::json::parse(file_content(path)); }
 
 }  // namespace
 
@@ -36,14 +33,13 @@ TEST_CASE("probe prints and writes what a material given by flags sends back", "
     const Dye dye(folder);
     const std::string path = folder.file("probe.json");
     const Outcome run =
-        run_stokes("probe --sigma-s 1.2 --sigma-a 0.1 --eta 1.5 --fresnel --quantum-yield 0.7" + dye.flags +
-                   few + "--lambda 372 --angle 30 --seed 9 --step 10 --bins 7 --json " + path);
+        run_stokes("probe --sigma-s 1.2 --sigma-a 0.1 --eta 1.5 --fresnel --quantum-yield 0.7" + dye.flags + few +
+                   "--lambda 372 --angle 30 --seed 9 --step 10 --bins 7 --json " + path);
     CAPTURE(run.err);
     REQUIRE(run.code == 0);
     CHECK(run.err == "");
     CHECK_THAT(run.out, Contains("command line, conserving: 372 nm at 30 deg, 640 photons"));
-    CHECK_THAT(run.out,
-               Contains("fluorescence [1/nm]") && Contains("exitance [1/mm^2]") && Contains(path + "\n"));
+    CHECK_THAT(run.out, Contains("fluorescence [1/nm]") && Contains("exitance [1/mm^2]") && Contains(path + "\n"));
 
     const nlohmann::json probe = json_of(path);
     CHECK(probe["model"] == "conserving");
@@ -77,8 +73,7 @@ TEST_CASE("probe prints and writes what a material given by flags sends back", "
 TEST_CASE("probe takes materials and model from a scene", "[probe_command]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("probe.json");
-    const std::string scene =
-        "probe " + prisms + " --material \"qdot545 subsurface\" --quiet --json " + path + few;
+    const std::string scene = "probe " + prisms + " --material \"qdot545 subsurface\" --quiet --json " + path + few;
     REQUIRE(run_stokes(scene).code == 0);
     CHECK(json_of(path)["model"] == "paper");
     CHECK(json_of(path)["material"] == "qdot545 subsurface");
@@ -88,8 +83,7 @@ TEST_CASE("probe takes materials and model from a scene", "[probe_command]") {
     CHECK(json_of(path)["model"] == "walk");
     CHECK(json_of(path)["first_collision"] == true);
     const nlohmann::json surface = [&] {
-        REQUIRE(run_stokes("probe " + prisms + " --material \"qdot655 surface\" --json " + path + few).code ==
-                0);
+        REQUIRE(run_stokes("probe " + prisms + " --material \"qdot655 surface\" --json " + path + few).code == 0);
         return json_of(path);
     }();
     CHECK(surface["totals"]["fluorescence"].get<double>() > 0.0);
@@ -100,15 +94,14 @@ TEST_CASE("probe takes materials and model from a scene", "[probe_command]") {
 TEST_CASE("probe measures the same by flags and by scene", "[probe_command]") {
     const TemporaryFolder folder;
     const std::string tables = std::string(STOKES_SOURCE_DIR) + "/tables/";
-    put_file(
-        folder.file("scene.json"),
-        R"({"format": "stokes-scene", "version": 1, "camera": {"position_mm": [0, 9, 9], "target_mm": [0, 0, 0]},
+    put_file(folder.file("scene.json"),
+             R"({"format": "stokes-scene", "version": 1, "camera": {"position_mm": [0, 9, 9], "target_mm": [0, 0, 0]},
                  "media": {"marble": {"sigma_s_per_mm": {"file": ")" +
-            tables + R"(media/marble_spectral_model.csv",
+                 tables + R"(media/marble_spectral_model.csv",
                                       "column": "ss_lin"}, "sigma_a_per_mm": 0.25, "eta": 1.5}},
                  "fluorophores": {"dot": {"excitation": 0.5, "quantum_yield": 0.75,
                     "emission": {"file": ")" +
-            tables + R"(fluorophores/qdot545_model.csv", "column": "emission"}}},
+                 tables + R"(fluorophores/qdot545_model.csv", "column": "emission"}}},
                  "materials": {"stone": {"type": "translucent", "medium": "marble", "fluorophore": "dot",
                                          "fluorescent_fraction": 0.25, "fresnel": true}},
                  "lights": [{"type": "beam", "section": "disk", "position_mm": [0, 9, 0], "direction": [0, -1, 0],
@@ -170,8 +163,8 @@ TEST_CASE("probe gives the same bits whatever the number of threads", "[probe_co
     std::string first;
     for (const char* threads : {"1", "2"}) {
         const std::string path = folder.file(threads);
-        REQUIRE(run_stokes("probe --sigma-s 1 --sigma-a 0.1 --model walk" + dye.flags + few + "--threads " +
-                           threads + " --json " + path)
+        REQUIRE(run_stokes("probe --sigma-s 1 --sigma-a 0.1 --model walk" + dye.flags + few + "--threads " + threads +
+                           " --json " + path)
                     .code == 0);
         if (first.empty()) first = file_content(path);
         CHECK(file_content(path) == first);
@@ -197,25 +190,19 @@ TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
         {folder.file("none.json") + " --material x", "none.json: cannot read"},
         {"--sigma-s 1", "--sigma-s: expected --sigma-a as well"},
         {"--eta 1.5", "expected --sigma-s and --sigma-a"},
-        {"--sigma-s 0 --sigma-a 0",
-         "expected a sum in [1e-09, 1e+09] 1/mm from 300 to 830 nm, got 0 at 300 nm"},
+        {"--sigma-s 0 --sigma-a 0", "expected a sum in [1e-09, 1e+09] 1/mm from 300 to 830 nm, got 0 at 300 nm"},
         {"--sigma-s -1 --sigma-a 2", "--sigma-s: expected a number in [0, 1e+12], got -1"},
         {"--sigma-s nan --sigma-a 2", "--sigma-s: expected a number in"},
-        {"--sigma-s 1 --sigma-a " + folder.file("none.csv"),
-         "--sigma-a: " + folder.file("none.csv") + ": cannot read"},
-        {"--sigma-s 1 --sigma-a " + folder.file("bad.csv"),
-         "bad.csv:3: a: expected no negative value, got -2"},
-        {"--sigma-s 1 --sigma-a " + folder.file("e.csv") + ":x",
-         "e.csv: no column \"x\"; expected one of: E"},
+        {"--sigma-s 1 --sigma-a " + folder.file("none.csv"), "--sigma-a: " + folder.file("none.csv") + ": cannot read"},
+        {"--sigma-s 1 --sigma-a " + folder.file("bad.csv"), "bad.csv:3: a: expected no negative value, got -2"},
+        {"--sigma-s 1 --sigma-a " + folder.file("e.csv") + ":x", "e.csv: no column \"x\"; expected one of: E"},
         {medium + "--eta 0.9", "--eta: expected a number, 1 to 4"},
         {medium + "--fraction 0.5", "--fraction: expected --emission as well"},
-        {medium + "--quantum-yield 0.5",
-         "--quantum-yield: expected --fraction, --excitation and --emission as well"},
+        {medium + "--quantum-yield 0.5", "--quantum-yield: expected --fraction, --excitation and --emission as well"},
         {medium + dye.flags + "--quantum-yield 1.1", "--quantum-yield: expected a number, 0 to 1"},
         {medium + "--fraction 1 --excitation " + folder.file("high.csv") + " --emission 1",
          "--excitation: expected values in [0, 1], got 1.5"},
-        {medium + "--fraction 1 --excitation 1 --emission " + folder.file("dark.csv"),
-         "--emission: expected some"},
+        {medium + "--fraction 1 --excitation 1 --emission " + folder.file("dark.csv"), "--emission: expected some"},
         {medium + "--model exact", "--model: expected paper, conserving, walk, got \"exact\""},
         {medium + "--first-collision", "first collision only with the transport walk"},
         {medium + "--angle 90", "--angle: expected a number, 0 to 89.9"},
@@ -224,8 +211,7 @@ TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
         {medium + "--photons 10", "--photons: expected a number, 64"},
         {medium + "--lambda-min 500 --lambda-max 510", "expected a range of at least 16 whole nanometres"},
         {medium + "--json " + folder.path() + "/none/x.json", "none"},
-        {medium + "--json " + folder.file("x") + " --matrix " + folder.file("x"),
-         "another file for each output"},
+        {medium + "--json " + folder.file("x") + " --matrix " + folder.file("x"), "another file for each output"},
     };
     const std::vector<std::string> before = folder.names();
     for (const auto& c : cases) {

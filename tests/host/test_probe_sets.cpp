@@ -45,8 +45,7 @@ double path_sum(const ProbeGrid& grid, int to, int times) {
 
 // The same as a kernel with the set's wavelengths and weights computes it.
 double estimate(const ProbeSet& set, int to, int times) {
-    const double weight =
-        set.wavelengths.pair_weight_nm * set.wavelengths.chain[static_cast<std::size_t>(times - 1)];
+    const double weight = set.wavelengths.pair_weight_nm * set.wavelengths.chain[static_cast<std::size_t>(times - 1)];
     if (times == 1) return transfer(365, to) * weight;
     double sum = 0.0;
     for (const int between : set.wavelengths.set)
@@ -130,6 +129,5 @@ TEST_CASE("one set that holds all emitting wavelengths is exact", "[probe sets]"
 TEST_CASE("probe sets need sixteen wavelengths", "[probe sets]") {
     ProbeGrid grid = grid_of(40, 780);
     grid.spare.clear();
-    CHECK_THAT(input_error([&] { probe_sets(grid, 1, 0); }),
-               Contains("expected at least 16 wavelengths, got 12"));
+    CHECK_THAT(input_error([&] { probe_sets(grid, 1, 0); }), Contains("expected at least 16 wavelengths, got 12"));
 }

@@ -12,9 +12,7 @@ namespace {
 const ProgressState half{32, 64, 32 * 262144ull, 75.0};
 const ProgressState longest{12345678, 100000000, 12345678ull * 268435456ull, 360000.0};
 
-bool has(const std::string& line, const std::string& text) {
-    return line.find(text) != std::string::npos;
-}
+bool has(const std::string& line, const std::string& text) { return line.find(text) != std::string::npos; }
 
 }  // namespace
 
@@ -74,7 +72,8 @@ TEST_CASE("what pauses the passes is not counted", "[progress]") {
 TEST_CASE("processor time counts work, not waiting, and what pauses the passes not at all", "[progress]") {
     const auto work = [] {
         const std::clock_t end = std::clock() + CLOCKS_PER_SEC / 5;
-        while (std::clock() < end) {}
+        while (std::clock() < end) {
+        }
     };
     Progress progress(4, true);
     work();

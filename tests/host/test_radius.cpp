@@ -71,8 +71,7 @@ TEST_CASE("the first pass has the first radius, and with alpha 1 every pass has"
 
 // Gamma(k + 1 + alpha) / Gamma(k + 2) -> k^(alpha - 1) for large k.
 TEST_CASE("the radius shrinks as pass^((alpha - 1) / 2)", "[radius]") {
-    const double ratio =
-        pass_radius_mm(1.0, 2.0 / 3.0, 4000000000u) / pass_radius_mm(1.0, 2.0 / 3.0, 4000000u);
+    const double ratio = pass_radius_mm(1.0, 2.0 / 3.0, 4000000000u) / pass_radius_mm(1.0, 2.0 / 3.0, 4000000u);
     CHECK(ratio == Approx(std::pow(1000.0, -1.0 / 6.0)).epsilon(1e-5));
 }
 
@@ -89,8 +88,7 @@ TEST_CASE("without photons in view the radius spreads a pass over the scene's su
 
     Scene layered = scene;  // a hundred squares within a sphere of 200 mm^2 pi
     for (int i = 0; i < 99; ++i) layered.shapes.push_back(scene.shapes.front());
-    CHECK(spread_radius_mm(layered, 1000) ==
-          Approx(std::sqrt(photons_per_disk * 4.0 * 200.0 / 1000.0)).epsilon(1e-6));
+    CHECK(spread_radius_mm(layered, 1000) == Approx(std::sqrt(photons_per_disk * 4.0 * 200.0 / 1000.0)).epsilon(1e-6));
 }
 
 TEST_CASE("a scene without surfaces has no radius", "[radius]") {

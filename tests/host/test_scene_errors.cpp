@@ -52,9 +52,7 @@ void check(const std::vector<Case>& cases, const std::string& path = "s.json") {
 
 }  // namespace
 
-TEST_CASE("The scene that the bad ones are made from is good") {
-    CHECK_NOTHROW(parse_scene(base, "s.json"));
-}
+TEST_CASE("The scene that the bad ones are made from is good") { CHECK_NOTHROW(parse_scene(base, "s.json")); }
 
 TEST_CASE("Bad scenes: the file as a whole") {
     CHECK_THAT(input_error([] { parse_scene("[]", "s.json"); }),
@@ -95,8 +93,7 @@ TEST_CASE("Bad scenes: render, film and camera") {
          ":3: render.wavelengths: expected \"uniform\" or \"importance\", got \"uniformly\""},
         {"\"seed\": 9", "\"distances\": \"far\"",
          ":3: render.distances: expected \"table\" or \"importance\", got \"far\""},
-        {"\"seed\": 9", "\"branches\": \"one\"",
-         ":3: render.branches: expected \"roulette\" or \"both\", got \"one\""},
+        {"\"seed\": 9", "\"branches\": \"one\"", ":3: render.branches: expected \"roulette\" or \"both\", got \"one\""},
         {"\"seed\": 9", "\"emission\": \"even\"",
          ":3: render.emission: expected \"random\", \"stratified\" or \"aimed\", got \"even\""},
         {"\"seed\": 9", "\"direct\": \"both\"", ":3: render.direct: expected \"photons\" or \"rays\", got \"both\""},
@@ -109,14 +106,11 @@ TEST_CASE("Bad scenes: render, film and camera") {
         {"\"width\": 8", "\"exposure_ev\": \"on\"", ":4: film.exposure_ev: expected \"auto\", got \"on\""},
         {"\"width\": 8", "\"exposure_ev\": 1e999", ":4: number out of range: 1e999"},
         {"\"target_mm\": [0, 0, 0]", "\"target_mm\": [0, 0]", ":5: camera.target_mm: expected an array of 3"},
-        {"\"target_mm\": [0, 0, 0]", "\"target_mm\": [0, 0, 50]",
-         ":5: camera.target_mm: expected another place"},
+        {"\"target_mm\": [0, 0, 0]", "\"target_mm\": [0, 0, 50]", ":5: camera.target_mm: expected another place"},
         {"\"target_mm\": [0, 0, 0], ", "", ":5: camera: missing key \"target_mm\""},
         {"\"up\": [0, 1, 0]", "\"up\": [0, 0, 1]", ":5: camera: expected up to point another way"},
-        {"\"up\": [0, 1, 0]", "\"up\": [0, 0, 0]",
-         ":5: camera.up: expected a direction, got a vector of length"},
-        {"\"up\": [0, 1, 0]", "\"vertical_fov_deg\": 180",
-         ":5: camera.vertical_fov_deg: expected a number in"},
+        {"\"up\": [0, 1, 0]", "\"up\": [0, 0, 0]", ":5: camera.up: expected a direction, got a vector of length"},
+        {"\"up\": [0, 1, 0]", "\"vertical_fov_deg\": 180", ":5: camera.vertical_fov_deg: expected a number in"},
         {"\"up\": [0, 1, 0]", R"("crop": [0, 0, 1, 1])", ":5: camera.crop: expected an object, got an array of 4"},
         {"\"up\": [0, 1, 0]", R"("crop": {"left": 0, "top": 0, "width": 1})",
          ":5: camera.crop: missing key \"height\""},
@@ -134,8 +128,7 @@ TEST_CASE("Bad scenes: render, film and camera") {
          ":5: camera.crop: expected left + width up to 1, got 1.25"},
         {"\"up\": [0, 1, 0]", R"("crop": {"left": 0, "top": 1, "width": 0.5, "height": 0.5})",
          ":5: camera.crop: expected top + height up to 1, got 1.5"},
-        {"[0, 0, 50]", "[0, \"y\", 50]",
-         ":5: camera.position_mm[1]: expected a number in [-1e+07, 1e+07], got \"y\""},
+        {"[0, 0, 50]", "[0, \"y\", 50]", ":5: camera.position_mm[1]: expected a number in [-1e+07, 1e+07], got \"y\""},
     });
 }
 
@@ -148,20 +141,15 @@ TEST_CASE("Bad scenes: spectra") {
         {
             {lamp, "{}", ":6: spectra.lamp: expected one of the keys \"file\", \"illuminant\", \"pairs\" or"},
             {lamp, "7", ":6: spectra.lamp: expected an object, got 7"},
-            {lamp, R"({"constant": 1, "pairs": []})",
-             ":6: spectra.lamp: \"pairs\" and \"constant\" given together"},
-            {lamp, R"({"constant": -1})",
-             ":6: spectra.lamp.constant: expected a number in [0, 1e+12], got -1"},
+            {lamp, R"({"constant": 1, "pairs": []})", ":6: spectra.lamp: \"pairs\" and \"constant\" given together"},
+            {lamp, R"({"constant": -1})", ":6: spectra.lamp.constant: expected a number in [0, 1e+12], got -1"},
             {lamp, R"({"pairs": []})", ":6: spectra.lamp.pairs: expected at least one"},
             {lamp, R"({"pairs": [[300]]})", ":6: spectra.lamp.pairs[0]: expected [wavelength in nm, value]"},
             {lamp, R"({"pairs": [[300, 1], [300, 1]]})",
              ":6: spectra.lamp.pairs[1][0]: expected wavelengths that increase, got 300 after 300"},
-            {lamp, R"({"pairs": [[300, -1]]})",
-             ":6: spectra.lamp.pairs[0][1]: expected a number in [0, 1e+12]"},
-            {lamp, R"({"pairs": [[0, 1]]})",
-             ":6: spectra.lamp.pairs[0][0]: expected a number in (0, 100000]"},
-            {lamp, R"({"illuminant": "D50"})",
-             ":6: spectra.lamp.illuminant: expected \"A\", \"D65\" or \"E\""},
+            {lamp, R"({"pairs": [[300, -1]]})", ":6: spectra.lamp.pairs[0][1]: expected a number in [0, 1e+12]"},
+            {lamp, R"({"pairs": [[0, 1]]})", ":6: spectra.lamp.pairs[0][0]: expected a number in (0, 100000]"},
+            {lamp, R"({"illuminant": "D50"})", ":6: spectra.lamp.illuminant: expected \"A\", \"D65\" or \"E\""},
             {lamp, R"({"file": "x.csv"})", ":6: spectra.lamp: missing key \"column\""},
             {lamp, R"({"file": "x.csv", "column": "a"})",
              ":6: spectra.lamp.file: " + folder.file("x.csv") + ": cannot read: No such file or directory"},
@@ -177,16 +165,14 @@ TEST_CASE("Bad scenes: spectra") {
              ":15: lights[0].spectrum: no \"lampe\" in spectra; did you mean \"lamp\"?"},
             {"\"spectrum\": \"lamp\"", "\"spectrum\": [1]",
              ":15: lights[0].spectrum: expected a spectrum (a number, a name in spectra, or an object)"},
-            {"\"spectrum\": \"lamp\"", "\"spectrum\": 0",
-             ":15: lights[0].spectrum: expected some light from 300"},
+            {"\"spectrum\": \"lamp\"", "\"spectrum\": 0", ":15: lights[0].spectrum: expected some light from 300"},
         },
         folder.file("s.json"));
 }
 
 TEST_CASE("Bad scenes: media, fluorophores and materials") {
     check({
-        {"\"sigma_s_per_mm\": 2", "\"sigma_s_per_mm\": -2",
-         ":7: media.stone.sigma_s_per_mm: expected a number in"},
+        {"\"sigma_s_per_mm\": 2", "\"sigma_s_per_mm\": -2", ":7: media.stone.sigma_s_per_mm: expected a number in"},
         {"\"sigma_s_per_mm\": 2", "\"sigma_s\": 2",
          ":7: media.stone: unknown key \"sigma_s\"; did you mean \"sigma_s_per_mm\"?"},
         {"\"sigma_s_per_mm\": 2, \"sigma_a_per_mm\": 0.1", "\"sigma_s_per_mm\": 0, \"sigma_a_per_mm\": 0",
@@ -196,15 +182,12 @@ TEST_CASE("Bad scenes: media, fluorophores and materials") {
          ":7: media.stone: expected sigma_s + sigma_a in [1e-09, 1e+09] 1/mm from 300"},
         {"\"sigma_s_per_mm\": 2, \"sigma_a_per_mm\": 0.1", "\"sigma_s_per_mm\": 0, \"sigma_a_per_mm\": 9e-10",
          ":7: media.stone: expected sigma_s + sigma_a in [1e-09, 1e+09] 1/mm from 300"},
-        {"\"eta\": 1.5", "\"dipole_eta\": 3.9",
-         ":7: media.stone.dipole_eta: expected a number in [1, 3.8], got 3.9"},
+        {"\"eta\": 1.5", "\"dipole_eta\": 3.9", ":7: media.stone.dipole_eta: expected a number in [1, 3.8], got 3.9"},
         {"[[500, 1]]", "[[500, 0]]",
          ":8: fluorophores.dye.emission: expected some emission from 300 to 830 nm, got none"},
         {"\"eta\": 1.5", "\"eta\": 0.5", ":7: media.stone.eta: expected a number in [1, 5], got 0.5"},
-        {"[[300, 1]]", "[[300, 1.5]]",
-         ":8: fluorophores.dye.excitation: expected values in [0, 1], got 1.5 at 300"},
-        {"[[500, 1]]}", "[[500, 1]]}, \"conversion_per_nm\": 2",
-         ":8: fluorophores.dye.conversion_per_nm: expected"},
+        {"[[300, 1]]", "[[300, 1.5]]", ":8: fluorophores.dye.excitation: expected values in [0, 1], got 1.5 at 300"},
+        {"[[500, 1]]}", "[[500, 1]]}, \"conversion_per_nm\": 2", ":8: fluorophores.dye.conversion_per_nm: expected"},
         {"[[500, 1]]}", "[[500, 1]]}, \"quantum_yield\": 1.01",
          ":8: fluorophores.dye.quantum_yield: expected a number in [0, 1], got 1.01"},
         {"\"reflectance\": 0.5", "\"reflectance\": 1.5",
@@ -223,10 +206,9 @@ TEST_CASE("Bad scenes: media, fluorophores and materials") {
         {"\"medium\": \"stone\"", "\"medium\": \"stome\"",
          ":11: materials.glow.medium: no \"stome\" in media; did you mean \"stone\"?"},
         {"\"medium\": \"stone\", ", "", ":11: materials.glow: missing key \"medium\""},
-        {"\"medium\": \"stone\", \"fluorophore\": \"dye\", \"fluorescent_fraction\": 0.5",
-         "\"subsurface\": false", ":11: materials.glow: missing key \"fluorophore\""},
-        {"\"fluorophore\": \"dye\", ", "",
-         ":11: materials.glow.fluorescent_fraction: a fluorescent fraction without"},
+        {"\"medium\": \"stone\", \"fluorophore\": \"dye\", \"fluorescent_fraction\": 0.5", "\"subsurface\": false",
+         ":11: materials.glow: missing key \"fluorophore\""},
+        {"\"fluorophore\": \"dye\", ", "", ":11: materials.glow.fluorescent_fraction: a fluorescent fraction without"},
         {", \"fluorescent_fraction\": 0.5", "", ":11: materials.glow: missing key \"fluorescent_fraction\""},
         {"\"fluorescent_fraction\": 0.5", "\"fluorescent_fraction\": 1.01",
          ":11: materials.glow.fluorescent_fraction: expected a number in [0, 1], got 1.01"},
@@ -249,8 +231,7 @@ TEST_CASE("Fresnel reflection needs a refractive index that tables of it end at"
     const auto with_eta = [](const std::string& eta, const std::string& fresnel) {
         std::string text = base;
         text.replace(text.find("\"eta\": 1.5"), 10, "\"eta\": " + eta);
-        return text.replace(text.find("\"medium\": \"stone\""), 17,
-                            "\"medium\": \"stone\", \"fresnel\": " + fresnel);
+        return text.replace(text.find("\"medium\": \"stone\""), 17, "\"medium\": \"stone\", \"fresnel\": " + fresnel);
     };
     CHECK(input_error([&] { parse_scene(with_eta("4.01", "true"), "s.json"); }) ==
           "s.json:11: materials.glow.fresnel: Fresnel reflection needs a medium with eta up to 4, got 4.01");
@@ -260,16 +241,12 @@ TEST_CASE("Fresnel reflection needs a refractive index that tables of it end at"
 
 TEST_CASE("Bad scenes: lights") {
     check({
-        {"\"power_W\": 5", "\"power_W\": 0",
-         ":15: lights[0].power_W: expected a number in (0, 1e+12], got 0"},
-        {", \"power_W\": 5", "",
-         ":14: lights[0]: expected one of the keys \"power_W\", \"radiance_W_m2_sr\" or"},
+        {"\"power_W\": 5", "\"power_W\": 0", ":15: lights[0].power_W: expected a number in (0, 1e+12], got 0"},
+        {", \"power_W\": 5", "", ":14: lights[0]: expected one of the keys \"power_W\", \"radiance_W_m2_sr\" or"},
         {"\"power_W\": 5", "\"power_W\": 5, \"radiance_W_m2_sr\": 5",
          ":14: lights[0]: \"power_W\" and \"radiance_W_m2_sr\" given together"},
-        {"\"power_W\": 5", "\"power_w\": 5",
-         ":15: lights[0]: unknown key \"power_w\"; did you mean \"power_W\"?"},
-        {"\"power_W\": 5", "\"power_W\": 5, \"material\": \"red\"",
-         ":15: lights[0].material: no \"red\" in materials"},
+        {"\"power_W\": 5", "\"power_w\": 5", ":15: lights[0]: unknown key \"power_w\"; did you mean \"power_W\"?"},
+        {"\"power_W\": 5", "\"power_W\": 5, \"material\": \"red\"", ":15: lights[0].material: no \"red\" in materials"},
         {"\"normal\": [0, -1, 0]", "\"normal\": [0, 0, 0]",
          ":14: lights[0].normal: expected a direction, got a vector"},
         {"\"radius_mm\": 10, \"s", "\"radius_mm\": 1e-30, \"s",
@@ -290,13 +267,11 @@ TEST_CASE("Bad scenes: lights") {
     const std::size_t begin = base.find("\"lights\": [");
     const std::size_t end = base.find("  \"shapes\"");
     const std::string dark = std::string(base).replace(begin, end - begin, "\"lights\": [],\n");
-    CHECK(input_error([&] { parse_scene(dark, "s.json"); }) ==
-          "s.json:13: lights: expected at least one light");
+    CHECK(input_error([&] { parse_scene(dark, "s.json"); }) == "s.json:13: lights: expected at least one light");
     const std::string up =
         R"("type": "rectangle", "up": [0, 2, 0], "width_mm": 1, "height_mm": 1, "center_mm": [0, 100, 0],
         "normal": [0, -1, 0], "spectrum": "lamp", "power_W": 5})";
-    const std::string parallel =
-        std::string(base).replace(begin, end - begin, "\"lights\": [{" + up + "],\n");
+    const std::string parallel = std::string(base).replace(begin, end - begin, "\"lights\": [{" + up + "],\n");
     CHECK(input_error([&] { parse_scene(parallel, "s.json"); }) ==
           "s.json:13: lights[0].up: expected another direction than normal");
 }
@@ -311,20 +286,17 @@ TEST_CASE("Bad scenes: shapes and transforms") {
         {
             {"\"material\": \"glow\"", "\"material\": \"glo\"",
              ":18: shapes[0].material: no \"glo\" in materials; did you mean \"glow\"?"},
-            {"\"material\": \"glow\"", "\"material\": 3",
-             ":18: shapes[0].material: expected a string, got 3"},
+            {"\"material\": \"glow\"", "\"material\": 3", ":18: shapes[0].material: expected a string, got 3"},
             {"\"radius_mm\": 10,\n", "\"radius_mm\": -10,\n",
              ":18: shapes[0].radius_mm: expected a number in (0, 1e+07]"},
             {"\"radius_mm\": 10,\n", "\"segments\": 3,\n", ":18: shapes[0]: missing key \"radius_mm\""},
             {"\"radius_mm\": 10,\n", "\"radius_mm\": 10, \"segments\": 3,\n",
              ":18: shapes[0].segments: expected an integer in [4, 2048]"},
             {"\"type\": \"sphere\"", "\"type\": \"cone\"", ":18: shapes[0].type: expected \"mesh\", \"box\""},
-            {"{\"scale\": 2}", "{\"scale\": 0}",
-             ":19: shapes[0].transform[0].scale: expected a scale other than zero"},
+            {"{\"scale\": 2}", "{\"scale\": 0}", ":19: shapes[0].transform[0].scale: expected a scale other than zero"},
             {"{\"scale\": 2}", "{\"scale\": [1, 0, 1]}",
              ":19: shapes[0].transform[0].scale[1]: expected a scale other than zero"},
-            {"{\"scale\": 2}", "{\"scale\": 1e8}",
-             ":18: shapes[0]: expected coordinates in [-1e+07, 1e+07] mm"},
+            {"{\"scale\": 2}", "{\"scale\": 1e8}", ":18: shapes[0]: expected coordinates in [-1e+07, 1e+07] mm"},
             {"{\"scale\": 2}", "{\"scale\": 1, \"translate_mm\": [0, 0, 0]}",
              ":19: shapes[0].transform[0]: \"scale\" and \"translate_mm\" given together"},
             {"{\"scale\": 2}", "{}", ":19: shapes[0].transform[0]: expected one of the keys"},
@@ -332,18 +304,15 @@ TEST_CASE("Bad scenes: shapes and transforms") {
             {"[0, 1, 0], \"angle", "[0, 0, 0], \"angle",
              ":19: shapes[0].transform[1].rotate_axis: expected a direction"},
             {", \"angle_deg\": 9", "", ":19: shapes[0].transform[1]: missing key \"angle_deg\""},
-            {sphere, mesh + "\"no.ply\"",
-             ":18: shapes[0].file: " + folder.file("no.ply") + ": cannot read: No such"},
+            {sphere, mesh + "\"no.ply\"", ":18: shapes[0].file: " + folder.file("no.ply") + ": cannot read: No such"},
             {sphere, mesh + "\"bad.obj\"",
              ":18: shapes[0].file: " + folder.file("bad.obj") + ":2: vertex index 3 out of range"},
             {sphere, mesh + "\"flat.obj\"", ":18: shapes[0]: expected a triangle with an area, found none"},
-            {sphere,
-             "\"type\": \"prism\", \"material\": \"glow\", \"sides\": 2, \"radius_mm\": 1, \"height_mm\": 1",
+            {sphere, "\"type\": \"prism\", \"material\": \"glow\", \"sides\": 2, \"radius_mm\": 1, \"height_mm\": 1",
              ":18: shapes[0].sides: expected an integer in [3, 2048], got 2"},
             {sphere, "\"type\": \"box\", \"material\": \"glow\", \"size_mm\": [1, 0, 1]",
              ":18: shapes[0].size_mm[1]: expected a number in (0"},
-            {"\"shapes\": [",
-             "\"shapes\": [{\"name\": \"a\", " + sphere + "}, {\"name\": \"a\", " + sphere + "},",
+            {"\"shapes\": [", "\"shapes\": [{\"name\": \"a\", " + sphere + "}, {\"name\": \"a\", " + sphere + "},",
              ":17: shapes[1].name: the name \"a\" given twice"},
             {"\"shapes\": [",
              "\"shapes\": [{\"type\": \"disk\", \"material\": \"glow\", \"radius_mm\": 1, \"body\": \"b\"},"

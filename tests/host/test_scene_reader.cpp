@@ -48,9 +48,9 @@ Scene scene_with(const std::string& what, const std::string& replacement) {
 TEST_CASE("A camera shows the whole picture, or the window that the scene says") {
     const Crop whole = parse_scene(base, "s.json").camera.crop;
     CHECK((whole.left == 0.0 && whole.top == 0.0 && whole.width == 1.0 && whole.height == 1.0));
-    const Crop crop = scene_with("\"vertical_fov_deg\": 30",
-                                 R"("crop": {"left": 0.7, "top": 0.25, "width": 0.3, "height": 0.125})")
-                          .camera.crop;
+    const Crop crop =
+        scene_with("\"vertical_fov_deg\": 30", R"("crop": {"left": 0.7, "top": 0.25, "width": 0.3, "height": 0.125})")
+            .camera.crop;
     CHECK((crop.left == 0.7 && crop.top == 0.25 && crop.width == 0.3 && crop.height == 0.125));
 }
 
@@ -86,8 +86,7 @@ TEST_CASE("A scene's settings, media and materials arrive as written") {
     CHECK(scene.materials[0].reflectance.at(450) == Approx(0.4));
     CHECK(scene.materials[0].reflectance.at(700) == 0.6);
     CHECK(scene.materials[1].kind == MaterialKind::translucent);
-    CHECK((scene.materials[1].medium == 0 && scene.materials[1].fluorophore == 0 &&
-           scene.materials[1].subsurface));
+    CHECK((scene.materials[1].medium == 0 && scene.materials[1].fluorophore == 0 && scene.materials[1].subsurface));
     CHECK(scene.materials[2].kind == MaterialKind::black);
 }
 
@@ -159,14 +158,13 @@ TEST_CASE("A surface reflects where the scene says so") {
     const std::string medium = "\"medium\": \"stone\"";
     CHECK(scene_with(medium, medium + ", \"fresnel\": true").materials[1].fresnel);
     CHECK_FALSE(scene_with(medium, medium + ", \"fresnel\": false").materials[1].fresnel);
-    CHECK_FALSE(
-        scene_with(medium, medium + ", \"fresnel\": false, \"subsurface\": false").materials[1].fresnel);
+    CHECK_FALSE(scene_with(medium, medium + ", \"fresnel\": false, \"subsurface\": false").materials[1].fresnel);
 }
 
 TEST_CASE("A quantum yield is given, or follows from the conversion and the emission, and is 1 at most") {
     const auto yield = [](const std::string& emission, const std::string& more) {
-        const Scene scene = scene_with(R"("emission": {"pairs": [[500, 1]]})",
-                                       R"("emission": {"pairs": )" + emission + "}" + more);
+        const Scene scene =
+            scene_with(R"("emission": {"pairs": [[500, 1]]})", R"("emission": {"pairs": )" + emission + "}" + more);
         return scene.fluorophores[0].quantum_yield;
     };
     const std::string sums_to_10 = "[[500, 0], [510, 1], [520, 0]]";
@@ -248,29 +246,25 @@ TEST_CASE("The flux of an emitter sums to its power, or to pi area radiance") {
     const Scene absolute = scene_with("\"power_W\": 5", "\"radiance_scale_W_m2_sr_nm\": 3");
     CHECK(absolute.lights[0].flux.at(400) == Approx(pi * area_m2 * 3 * 2));
 
-    const Scene narrow =
-        scene_with("\"seed\": 9", "\"seed\": 9, \"lambda_min_nm\": 380, \"lambda_max_nm\": 399");
+    const Scene narrow = scene_with("\"seed\": 9", "\"seed\": 9, \"lambda_min_nm\": 380, \"lambda_max_nm\": 399");
     CHECK(narrow.lights[0].flux.sum_1nm(380, 399) == Approx(5.0));
 }
 
 TEST_CASE("Emitters: a rectangle faces along its normal, a sphere outward") {
-    const std::string disk =
-        R"("type": "disk", "center_mm": [0, 100, 0], "normal": [0, -1, 0], "radius_mm": 10)";
-    const Scene wall = scene_with(
-        disk, R"("type": "rectangle", "center_mm": [5, 6, 7], "normal": [0, 0, -2], "up": [1, 1, 0],
+    const std::string disk = R"("type": "disk", "center_mm": [0, 100, 0], "normal": [0, -1, 0], "radius_mm": 10)";
+    const Scene wall =
+        scene_with(disk, R"("type": "rectangle", "center_mm": [5, 6, 7], "normal": [0, 0, -2], "up": [1, 1, 0],
                  "width_mm": 2, "height_mm": 4)");
     const Mesh& mesh = wall.shapes[1].mesh;
     CHECK(mesh_area_mm2(mesh) == Approx(8));
     for (const glm::uvec3& t : mesh.triangles) {
         const glm::vec3 a = mesh.positions_mm[t.x];
-        const glm::vec3 n =
-            glm::normalize(glm::cross(mesh.positions_mm[t.y] - a, mesh.positions_mm[t.z] - a));
+        const glm::vec3 n = glm::normalize(glm::cross(mesh.positions_mm[t.y] - a, mesh.positions_mm[t.z] - a));
         CHECK(n.z == Approx(-1));
     }
     // Half the height along up and half the width across it: the farthest corner along (1, 1, 0) is 2 away.
     float along_up = 0;
-    for (const glm::vec3& p : mesh.positions_mm)
-        along_up = std::max(along_up, (p.x - 5 + p.y - 6) / std::sqrt(2.0F));
+    for (const glm::vec3& p : mesh.positions_mm) along_up = std::max(along_up, (p.x - 5 + p.y - 6) / std::sqrt(2.0F));
     CHECK(along_up == Approx(2));
 
     const Scene ball = scene_with(disk, R"("type": "sphere", "center_mm": [0, 100, 0], "radius_mm": 10)");
@@ -282,8 +276,7 @@ TEST_CASE("Emitters: a rectangle faces along its normal, a sphere outward") {
 TEST_CASE("Beams carry irradiance times their cross-section") {
     const std::string light =
         R"({"type": "disk", "center_mm": [0, 100, 0], "normal": [0, -1, 0], "radius_mm": 10, "spectrum": "lamp", "power_W": 5})";
-    const Scene disk =
-        scene_with(light, R"({"name": "sun", "type": "beam", "section": "disk", "position_mm": [0, 9, 0],
+    const Scene disk = scene_with(light, R"({"name": "sun", "type": "beam", "section": "disk", "position_mm": [0, 9, 0],
         "direction": [0, -3, 0], "radius_mm": 20, "spectrum": "lamp", "irradiance_W_m2": 10})");
     const Light& round = disk.lights[0];
     CHECK((round.name == "sun" && round.kind == LightKind::beam && round.section == BeamSection::disk));
@@ -294,8 +287,8 @@ TEST_CASE("Beams carry irradiance times their cross-section") {
     CHECK(glm::length(round.half_u_mm) == Approx(20));
     CHECK(glm::length(round.half_v_mm) == Approx(20));
 
-    const Scene rectangle = scene_with(
-        light, R"({"type": "beam", "section": "rectangle", "position_mm": [0, 9, 0], "up": [1, 5, 0],
+    const Scene rectangle =
+        scene_with(light, R"({"type": "beam", "section": "rectangle", "position_mm": [0, 9, 0], "up": [1, 5, 0],
         "direction": [0, -3, 0], "width_mm": 20, "height_mm": 30, "spectrum": "lamp", "irradiance_W_m2": 10})");
     const Light& flat = rectangle.lights[0];
     CHECK(flat.section == BeamSection::rectangle);
@@ -330,8 +323,7 @@ TEST_CASE("Spectra come from files, illuminants, pairs and constants, with the e
 }
 
 TEST_CASE("Surface fluorescence needs no medium") {
-    const Scene scene =
-        scene_with(R"("medium": "stone", "fluorophore")", R"("subsurface": false, "fluorophore")");
+    const Scene scene = scene_with(R"("medium": "stone", "fluorophore")", R"("subsurface": false, "fluorophore")");
     CHECK_FALSE(scene.materials[1].subsurface);
     CHECK(scene.materials[1].medium == -1);
     CHECK(scene.materials[1].fluorophore == 0);
@@ -353,8 +345,7 @@ TEST_CASE("The exhibit: three dyes in two rows, each object standing on its pris
         throw std::logic_error("no shape " + name);
     };
     for (const std::string row : {"front ", "back "}) {
-        const std::string pairs[][2] = {
-            {"green prism", "sphere"}, {"yellow prism", "dragon"}, {"red prism", "bunny"}};
+        const std::string pairs[][2] = {{"green prism", "sphere"}, {"yellow prism", "dragon"}, {"red prism", "bunny"}};
         for (const auto& [prism_name, object_name] : pairs) {
             INFO(row << prism_name);
             const Shape& prism = find(row + prism_name);

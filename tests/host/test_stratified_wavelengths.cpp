@@ -65,8 +65,8 @@ TEST_CASE("joint ratios are those of every way to draw a row", "[stratified_wave
             CHECK(pair_ratio(i, j) == joint_ratio({i, j}));
         }
     }
-    for (const Strata& row : {Strata{3, 3, 3}, Strata{2, 3, 3}, Strata{1, 2, 3}, Strata{0, 9, 8},
-                              Strata{15, 0, 7}, Strata{5, 5, 5, 5}, Strata{12, 13, 12, 14}})
+    for (const Strata& row : {Strata{3, 3, 3}, Strata{2, 3, 3}, Strata{1, 2, 3}, Strata{0, 9, 8}, Strata{15, 0, 7},
+                              Strata{5, 5, 5, 5}, Strata{12, 13, 12, 14}})
         CHECK(joint_ratio(row) == Approx(enumerated_ratio(row)).epsilon(1e-13));
     CHECK(joint_ratio(Strata(16, 4)) > 0.0);
     CHECK(joint_ratio(Strata(17, 4)) == 0.0);
@@ -107,8 +107,7 @@ TEST_CASE("expected counts and pairs of wavelengths add up", "[stratified_wavele
             own += within(i, s);
             if (within(i, s) > 0.0)
                 for (int j = first_nm; j <= last_nm; ++j)
-                    for (std::uint32_t t = 0; t < 16; ++t)
-                        pairs += within(i, s) * within(j, t) * pair_ratio(s, t);
+                    for (std::uint32_t t = 0; t < 16; ++t) pairs += within(i, s) * within(j, t) * pair_ratio(s, t);
         }
         CHECK(own == Approx(strata.expected(i)).epsilon(1e-12));
         CHECK(pairs == Approx(15.0 * strata.expected(i)).epsilon(1e-12));
@@ -128,8 +127,7 @@ TEST_CASE("a set is in order and says where it is", "[stratified_wavelengths]") 
             REQUIRE(w.strata[k] < begin + m);
             REQUIRE(w.strata[k] + 1.0 > begin);
             REQUIRE(w.rarity[k] * m == Approx(16.0 / 481.0).epsilon(1e-12));
-            REQUIRE(w.weight_nm(0, k) * m * pair_ratio(w.strata[0], w.strata[k]) ==
-                    Approx(1.0).epsilon(1e-12));
+            REQUIRE(w.weight_nm(0, k) * m * pair_ratio(w.strata[0], w.strata[k]) == Approx(1.0).epsilon(1e-12));
         }
     }
     CHECK(strata.draw(3, 7).set == strata.draw(3, 7).set);
@@ -137,8 +135,9 @@ TEST_CASE("a set is in order and says where it is", "[stratified_wavelengths]") 
     CHECK(strata.draw(3, 7).set != strata.draw(4, 7).set);
 }
 
-// Sets of different seeds are independent, those of one are not. One member of each, any of them alike, is an independent draw with probability expected / 16, and so
-// are the strata of two of them with pair ratio / 240. Both tests together are wrong once in 1000.
+// Sets of different seeds are independent, those of one are not. One member of each, any of them alike, is an
+// independent draw with probability expected / 16, and so are the strata of two of them with pair ratio / 240. Both
+// tests together are wrong once in 1000.
 TEST_CASE("wavelengths and pairs of strata are drawn as often as expected", "[stratified_wavelengths]") {
     constexpr std::uint32_t sets = 200000;
     const StratifiedWavelengths strata = uneven();
@@ -146,8 +145,7 @@ TEST_CASE("wavelengths and pairs of strata are drawn as often as expected", "[st
     std::vector<double> singles(last_nm - first_nm + 1, 0.0), single_means, pairs(256, 0.0), pair_means;
     for (std::uint32_t pass = 0; pass < sets; ++pass) {
         const PassWavelengths w = strata.draw(5 + pass, 1000 * pass);
-        const std::uint64_t one = uniform_below(generator, 16),
-                            other = (one + 1 + uniform_below(generator, 15)) % 16;
+        const std::uint64_t one = uniform_below(generator, 16), other = (one + 1 + uniform_below(generator, 15)) % 16;
         singles[static_cast<std::size_t>(w.set[one] - first_nm)] += 1.0;
         pairs[w.strata[one] * 16 + w.strata[other]] += 1.0;
     }

@@ -59,10 +59,9 @@ TEST_CASE("A texture needs a shape with coordinates") {
     const std::string end = ", \"material\": \"wall\"}";
     CHECK(folder.error(good, R"({"type": "disk", "radius_mm": 3)" + end).empty());
     CHECK(folder.error(good, R"({"type": "mesh", "file": "uv.obj")" + end).empty());
-    for (const char* shape :
-         {R"({"type": "mesh", "file": "plain.obj")", R"({"type": "sphere", "radius_mm": 3)",
-          R"({"type": "box", "size_mm": [1, 1, 1])",
-          R"({"type": "prism", "sides": 5, "radius_mm": 1, "height_mm": 1)"}) {
+    for (const char* shape : {R"({"type": "mesh", "file": "plain.obj")", R"({"type": "sphere", "radius_mm": 3)",
+                              R"({"type": "box", "size_mm": [1, 1, 1])",
+                              R"({"type": "prism", "sides": 5, "radius_mm": 1, "height_mm": 1)"}) {
         INFO(shape);
         CHECK(folder.error(good, shape + end) ==
               "s.json:5: shapes[1]: the texture of material \"wall\" needs a shape with coordinates: a "
@@ -75,16 +74,12 @@ TEST_CASE("Mistakes in textures are named") {
     const Folder folder;
     CHECK(folder.error(R"({"texture": "t.png", "black": 0.1})") ==
           "s.json:3: materials.wall.reflectance: missing key \"white\"");
-    CHECK_THAT(
-        folder.error(R"({"texture": "t.png", "black": 0, "wite": 1})"),
-        Contains("s.json:3: materials.wall.reflectance: unknown key \"wite\"; did you mean \"white\"?"));
+    CHECK_THAT(folder.error(R"({"texture": "t.png", "black": 0, "wite": 1})"),
+               Contains("s.json:3: materials.wall.reflectance: unknown key \"wite\"; did you mean \"white\"?"));
     CHECK_THAT(folder.error(R"({"texture": "t.png", "black": 0, "white": 1.5})"),
                Contains("s.json:3: materials.wall.reflectance.white: expected"));
-    CHECK_THAT(
-        folder.error(R"({"texture": "bad.png", "black": 0, "white": 1})"),
-        Contains("s.json:3: materials.wall.reflectance.texture: ") && Contains("bad.png: not a PNG file"));
-    CHECK_THAT(folder.error(R"({"texture": "no.png", "black": 0, "white": 1})"),
-               Contains("no.png: cannot read"));
-    CHECK_THAT(folder.error(R"({"texture": 5, "black": 0, "white": 1})"),
-               Contains("expected a string, got 5"));
+    CHECK_THAT(folder.error(R"({"texture": "bad.png", "black": 0, "white": 1})"),
+               Contains("s.json:3: materials.wall.reflectance.texture: ") && Contains("bad.png: not a PNG file"));
+    CHECK_THAT(folder.error(R"({"texture": "no.png", "black": 0, "white": 1})"), Contains("no.png: cannot read"));
+    CHECK_THAT(folder.error(R"({"texture": 5, "black": 0, "white": 1})"), Contains("expected a string, got 5"));
 }

@@ -45,8 +45,7 @@ std::vector<Fluorophore> shipped_fluorophores() {
     };
     for (const char* dot : {"qdot545", "qdot585", "qdot655"})
         add(dot, std::string("fluorophores/") + dot + "_model.csv", "");
-    for (const std::string mineral :
-         {"calcite_mn", "willemite_mn", "fluorite_eu", "sodalite_s2", "scheelite"})
+    for (const std::string mineral : {"calcite_mn", "willemite_mn", "fluorite_eu", "sodalite_s2", "scheelite"})
         add(mineral, "fluorophores/minerals_model.csv", mineral + "_");
     return result;
 }
@@ -73,9 +72,7 @@ Values tabulated(const Spectrum& spectrum) {
     return result;
 }
 
-std::size_t index_of(const PassWavelengths& w, std::size_t k) {
-    return static_cast<std::size_t>(w.set[k] - first_nm);
-}
+std::size_t index_of(const PassWavelengths& w, std::size_t k) { return static_cast<std::size_t>(w.set[k] - first_nm); }
 
 const std::vector<Values>& eye() {
     static const std::vector<Values> matching = {tabulated(cie1931().x), tabulated(cie1931().y),
@@ -83,9 +80,7 @@ const std::vector<Values>& eye() {
     return matching;
 }
 
-double sum_of(const Values& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
+double sum_of(const Values& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 Values product(const Values& a, const Values& b) {
     Values result(all);
@@ -155,8 +150,7 @@ TEST_CASE("importance is where the light is, and some everywhere", "[wavelength_
 
 // It may lie across two strata, which are drawn independently.
 TEST_CASE("a line of light is drawn about once a set", "[wavelength_importance]") {
-    const Scene laser =
-        lit({{364.5, 365.0, 365.5}, {0.0, 1.0, 0.0}, Outside::zero}, {shipped_fluorophores()[0]});
+    const Scene laser = lit({{364.5, 365.0, 365.5}, {0.0, 1.0, 0.0}, Outside::zero}, {shipped_fluorophores()[0]});
     const auto strata = stratified_wavelengths(laser);
     REQUIRE(strata);
     CHECK(strata->expected(365) == Approx(1.0).epsilon(1e-12));
@@ -238,8 +232,7 @@ TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_imp
                     if (full[i] > 0.0 && !(samples[i].standard_error() < 1e-3 * full[i])) return true;
                 return false;
             };
-            for (std::uint32_t pass = 0; pass < 1000000 && (pass % 5000 != 0 || pass < 5000 || open());
-                 ++pass) {
+            for (std::uint32_t pass = 0; pass < 1000000 && (pass % 5000 != 0 || pass < 5000 || open()); ++pass) {
                 const PassWavelengths w = strata->draw(pass, 21 * pass);
                 const PairWeights weights = pair_weights(w);
                 for (std::size_t i = 0; i < 3; ++i) {
@@ -249,8 +242,7 @@ TEST_CASE("the mean over many sets is the full bispectral sum", "[wavelength_imp
             }
             for (std::size_t i = 0; i < samples.size(); ++i) {
                 if (full[i] == 0.0) continue;
-                CAPTURE(lamp_name, fluorophore.name, i, samples[i].count(),
-                        samples[i].mean() / full[i] - 1.0);
+                CAPTURE(lamp_name, fluorophore.name, i, samples[i].count(), samples[i].mean() / full[i] - 1.0);
                 CHECK(samples[i].standard_error() < 1e-3 * full[i]);
                 CHECK(std::abs(samples[i].z(full[i])) < 3.0);
                 ++sums;
@@ -274,8 +266,7 @@ TEST_CASE("over passes the noise of wavelengths falls faster than that of indepe
         std::vector<double> full;
         for (const Fluorophore& dot : dots)
             for (const Values& matching : eye()) {
-                seen.emplace_back(product(lamp, tabulated(dot.excitation)),
-                                  product(tabulated(dot.emission), matching));
+                seen.emplace_back(product(lamp, tabulated(dot.excitation)), product(tabulated(dot.emission), matching));
                 full.push_back(full_pairs(seen.back().first, seen.back().second));
             }
         std::vector<Values> elastic;
@@ -294,8 +285,7 @@ TEST_CASE("over passes the noise of wavelengths falls faster than that of indepe
                     for (std::size_t i = 0; i < elastic.size(); ++i)
                         take(seen.size() + i, elastic_estimate(w, elastic[i]));
                 };
-                add(strata->draw(seed, pass),
-                    [&](std::size_t i, double value) { mean[i] += value / passes; });
+                add(strata->draw(seed, pass), [&](std::size_t i, double value) { mean[i] += value / passes; });
                 add(strata->draw(1000 + seed * passes + pass, pass),
                     [&](std::size_t i, double value) { alone[i].add(value); });
             }

@@ -15,12 +15,8 @@ namespace {
 constexpr int first_nm = 300, last_nm = 780, all = last_nm - first_nm + 1;
 
 // A spectrum that changes slowly, and one that is nothing but a line of 3 nm on a weak ground.
-double smooth(int lambda_nm) {
-    return 1.0 + 0.5 * std::sin(lambda_nm * 0.02);
-}
-double spiky(int lambda_nm) {
-    return std::abs(lambda_nm - 546) <= 1 ? 200.0 : 0.05;
-}
+double smooth(int lambda_nm) { return 1.0 + 0.5 * std::sin(lambda_nm * 0.02); }
+double spiky(int lambda_nm) { return std::abs(lambda_nm - 546) <= 1 ? 200.0 : 0.05; }
 
 // Excitation and emission that overlap between 420 and 560 nm.
 Fluorophore overlapping() {
@@ -69,8 +65,7 @@ TEST_CASE("every wavelength is in a set equally often", "[wavelengths]") {
     constexpr std::uint32_t sets = 30000;
     std::vector<double> counts(all, 0.0);
     for (std::uint32_t pass = 0; pass < sets; ++pass)
-        for (const int lambda_nm : draw_wavelengths(5, pass, first_nm, last_nm))
-            counts[lambda_nm - first_nm] += 1.0;
+        for (const int lambda_nm : draw_wavelengths(5, pass, first_nm, last_nm)) counts[lambda_nm - first_nm] += 1.0;
     const double share = double(STOKES_WAVELENGTHS) / all, expected = sets * share;
     double sum = 0.0;
     for (const double count : counts) sum += (count - expected) * (count - expected) / expected;
@@ -81,8 +76,7 @@ TEST_CASE("every wavelength is in a set equally often", "[wavelengths]") {
 
 // 3.5 standard errors: each is wrong by chance once in 2000. The standard error itself is below 2 % of the
 // sum.
-TEST_CASE("the image weight makes the sum over a set estimate the sum over all wavelengths",
-          "[wavelengths]") {
+TEST_CASE("the image weight makes the sum over a set estimate the sum over all wavelengths", "[wavelengths]") {
     const double weight = image_weight_nm(first_nm, last_nm);
     for (const auto& g : {std::function<double(int)>(smooth), std::function<double(int)>(spiky)}) {
         double full = 0.0;
@@ -114,8 +108,7 @@ TEST_CASE("the pair weight makes re-radiated flux unbiased given the emitted wav
                 double sum = 0.0;
                 for (std::size_t i = 0; i < set.size(); ++i)
                     if (set[i] < set[j])
-                        sum += flux(set[i]) * fluorophore.excitation.at(set[i]) *
-                               fluorophore.emission.at(set[j]);
+                        sum += flux(set[i]) * fluorophore.excitation.at(set[i]) * fluorophore.emission.at(set[j]);
                 estimates[set[j] - first_nm].add(weight * sum);
             }
         }
@@ -141,8 +134,7 @@ TEST_CASE("re-radiation rows hold eq. 1-2 with the pair weight, and nothing at o
     for (std::size_t ex = 0; ex < set.size(); ++ex)
         for (std::size_t em = 0; em < set.size(); ++em) {
             const double expected =
-                em > ex ? 0.013 * 32.0 * fluorophore.excitation.at(set[ex]) * fluorophore.emission.at(set[em])
-                        : 0.0;
+                em > ex ? 0.013 * 32.0 * fluorophore.excitation.at(set[ex]) * fluorophore.emission.at(set[em]) : 0.0;
             CHECK(static_cast<double>(rows[ex].v[em]) == Approx(expected).epsilon(1e-6));
             if (em <= ex) CHECK(rows[ex].v[em] == 0.0f);
         }

@@ -20,7 +20,8 @@ namespace stokes {
 // A shipped scene in 16 x 12 blocks of pixels, in sixteen neighbouring wavelengths and under lamps that are
 // flat over them: all passes have the same wavelengths, so that what is left of the noise is that of photons
 // and of camera rays. Beams are half as wide, so that more of their photons are seen. Every render has the
-// same passes, so that the blur of their radii is the same in a test and in its reference; direct light by rays has none.
+// same passes, so that the blur of their radii is the same in a test and in its reference; direct light by rays has
+// none.
 struct ReferenceSetting {
     std::string name, scene_file;
     int lambda_min_nm;  // to lambda_min_nm + 15
@@ -115,17 +116,16 @@ inline void write_reference(const ReferenceSetting& s, const LayerSamples& sampl
     }
     write_file_atomically(
         reference_path(s),
-        fmt::format(
-            "{{\"format\": \"stokes-reference\", \"version\": 1,\n  \"comment\": \"Written by "
-            "scripts/make_references: means of independent renders of the same passes, XYZ [cd/m^2] of each "
-            "block, top row first, then of the picture's mean.\",\n"
-            "  \"scene\": \"{}\", \"width\": {}, \"height\": {},\n"
-            "  \"lambda_min_nm\": {}, \"lambda_max_nm\": {}, \"lamp_W_nm\": 1,\n"
-            "  \"photons_per_pass\": {}, \"radius_mm\": {}, \"alpha\": {},\n"
-            "  \"passes\": {}, \"renders\": {}, \"first_seed\": {},\n  \"layers\": {{{}\n  }}\n}}\n",
-            s.scene_file, reference_columns * block_edge, reference_rows * block_edge, s.lambda_min_nm,
-            s.lambda_min_nm + 15, s.photons_per_pass, s.radius_mm, 2.0 / 3.0, reference_passes,
-            reference_renders, first_reference_seed, layers));
+        fmt::format("{{\"format\": \"stokes-reference\", \"version\": 1,\n  \"comment\": \"Written by "
+                    "scripts/make_references: means of independent renders of the same passes, XYZ [cd/m^2] of each "
+                    "block, top row first, then of the picture's mean.\",\n"
+                    "  \"scene\": \"{}\", \"width\": {}, \"height\": {},\n"
+                    "  \"lambda_min_nm\": {}, \"lambda_max_nm\": {}, \"lamp_W_nm\": 1,\n"
+                    "  \"photons_per_pass\": {}, \"radius_mm\": {}, \"alpha\": {},\n"
+                    "  \"passes\": {}, \"renders\": {}, \"first_seed\": {},\n  \"layers\": {{{}\n  }}\n}}\n",
+                    s.scene_file, reference_columns * block_edge, reference_rows * block_edge, s.lambda_min_nm,
+                    s.lambda_min_nm + 15, s.photons_per_pass, s.radius_mm, 2.0 / 3.0, reference_passes,
+                    reference_renders, first_reference_seed, layers));
 }
 
 inline const JsonValue& member(const JsonValue& object, const std::string& key) {
@@ -155,8 +155,7 @@ inline Reference read_reference(const ReferenceSetting& s) {
         for (const JsonValue& v : member(layer, "xyz").items) reference.mean[c].push_back(v.number);
         for (const JsonValue& v : member(layer, "standard_error").items)
             reference.standard_error[c].push_back(v.number);
-        if (reference.mean[c].size() != reference_values ||
-            reference.standard_error[c].size() != reference_values)
+        if (reference.mean[c].size() != reference_values || reference.standard_error[c].size() != reference_values)
             throw InputError(path + ": expected " + std::to_string(reference_values) + " values a layer");
     }
     return reference;

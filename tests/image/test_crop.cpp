@@ -46,8 +46,7 @@ TEST_CASE("a crop is its part of the picture, and of no other place in it", "[cr
     const RgbLayers whole = render(scene, width, height, {});
     const RgbLayers crop = render(scene, crop_width, crop_height,
                                   {static_cast<double>(left) / width, static_cast<double>(top) / height,
-                                   static_cast<double>(crop_width) / width,
-                                   static_cast<double>(crop_height) / height});
+                                   static_cast<double>(crop_width) / width, static_cast<double>(crop_height) / height});
     for (const std::string& layer : layers_in_order(whole)) {
         CAPTURE(layer);
         const auto compare_at = [&](int x, int y) {

@@ -11,13 +11,9 @@ using namespace stokes;
 
 namespace {
 
-glm::dvec2 chromaticity(const glm::dvec3& xyz) {
-    return glm::dvec2(xyz) / (xyz.x + xyz.y + xyz.z);
-}
+glm::dvec2 chromaticity(const glm::dvec3& xyz) { return glm::dvec2(xyz) / (xyz.x + xyz.y + xyz.z); }
 
-double angle_about(const glm::dvec2& white, const glm::dvec2& xy) {
-    return std::atan2(xy.y - white.y, xy.x - white.x);
-}
+double angle_about(const glm::dvec2& white, const glm::dvec2& xy) { return std::atan2(xy.y - white.y, xy.x - white.x); }
 
 // The wavelength [nm] whose chromaticity lies on the ray from the white of D65 through xy; 0 where that ray
 // ends on the line of purples.
@@ -167,8 +163,7 @@ TEST_CASE("the prisms glow in the colours of their quantum dots", "[hue]") {
             for (const Fluorophore& dots : scene.fluorophores)
                 by_distance[glm::length(seen - chromaticity(xyz_of(dots.emission)))] = dots.name;
             const Fluorophore& own = scene.fluorophores[static_cast<std::size_t>(material.fluorophore)];
-            const glm::dvec2 expected = glow_chromaticity(scene, own),
-                             emission = chromaticity(xyz_of(own.emission));
+            const glm::dvec2 expected = glow_chromaticity(scene, own), emission = chromaticity(xyz_of(own.emission));
             CAPTURE(seen.x, seen.y, expected.x, expected.y, emission.x, emission.y, dominant_wavelength(seen),
                     dominant_wavelength(emission));
             CHECK(by_distance.begin()->second == own.name);

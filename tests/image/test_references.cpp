@@ -43,9 +43,8 @@ TEST_CASE("renders of the shipped scenes agree with their references", "[referen
         for (std::uint32_t pass = 0; pass < reference_passes; ++pass) add_values(samples, images.next(pass));
         for (std::size_t c = 0; c < component_count; ++c) {
             const Sample& picture = samples[c][reference_values - 2];
-            UNSCOPED_INFO(component_names[c] << ": mean Y " << picture.mean() << " +- "
-                                             << picture.standard_error() << ", reference "
-                                             << reference.mean[c][reference_values - 2] << " +- "
+            UNSCOPED_INFO(component_names[c] << ": mean Y " << picture.mean() << " +- " << picture.standard_error()
+                                             << ", reference " << reference.mean[c][reference_values - 2] << " +- "
                                              << reference.standard_error[c][reference_values - 2]);
         }
         CHECK(count_differences(samples, reference) == 0);

@@ -5,8 +5,8 @@
 __kernel void reflectances(__global const float2* cosines, __global float2* found, uint n) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
-    found[i] = (float2)(external_reflectance(cosines[i].x, cosines[i].y),
-                        internal_reflectance(cosines[i].x, cosines[i].y));
+    found[i] =
+        (float2)(external_reflectance(cosines[i].x, cosines[i].y), internal_reflectance(cosines[i].x, cosines[i].y));
 }
 
 // directions, normals: x, y, z and in directions the index. refracted, mirrored: x, y, z, 0.

@@ -18,7 +18,8 @@ __kernel void later_points(uint first, uint seed, __global float4* points, uint 
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
     const uint2 a = sobol_words_2_3(first + i, seed), b = sobol_words_4_5(first + i, seed);
-    points[i] = (float4)(uniform_from_word(a.x), uniform_from_word(a.y), uniform_from_word(b.x), uniform_from_word(b.y));
+    points[i] =
+        (float4)(uniform_from_word(a.x), uniform_from_word(a.y), uniform_from_word(b.x), uniform_from_word(b.y));
 }
 
 __kernel void points(uint first, uint seed, __global float4* all, __global float2* two, uint n) {

@@ -37,7 +37,7 @@ std::vector<Ray> rays_of_pass(const CameraRecord& record, std::uint32_t pass_ind
     PassConstants pass{};
     pass.seed = 11;
     pass.pass = pass_index;
-    pass.even_pixels = even ? 1 : 0;
+    pass.low_discrepancy_pixels = even ? 1 : 0;
     const Buffer<PassConstants> constants(test_device(), "pass", std::vector<PassConstants>{pass});
     const Buffer<Ray> rays(test_device(), "rays", view.ray_count());
     view.make_rays(constants, rays);
@@ -49,8 +49,7 @@ glm::dvec2 film_point(const Camera& camera, int width, int height, const Ray& ra
     const glm::dvec3 forward = glm::normalize(camera.target_mm - camera.position_mm);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
     const glm::dvec3 d(ray.dx, ray.dy, ray.dz);
-    const double scale =
-        0.5 * height / std::tan(glm::radians(0.5 * camera.vertical_fov_deg)) / glm::dot(d, forward);
+    const double scale = 0.5 * height / std::tan(glm::radians(0.5 * camera.vertical_fov_deg)) / glm::dot(d, forward);
     return {0.5 * width + glm::dot(d, right) * scale, 0.5 * height - glm::dot(d, up) * scale};
 }
 
@@ -104,8 +103,7 @@ TEST_CASE("each ray has unit length and goes through its own pixel", "[camera][t
         REQUIRE(ray.t_min == 0.0f);
         REQUIRE(ray.t_max == std::numeric_limits<float>::infinity());
         REQUIRE(glm::length(glm::dvec3(ray.dx, ray.dy, ray.dz)) == Approx(1.0).epsilon(1e-6));
-        const glm::dvec2 offset =
-            film_point(camera, width, height, ray) - glm::dvec2(pixels[i].x, pixels[i].y);
+        const glm::dvec2 offset = film_point(camera, width, height, ray) - glm::dvec2(pixels[i].x, pixels[i].y);
         REQUIRE(offset.x > -1e-4);
         REQUIRE(offset.x < 1.0 + 1e-4);
         REQUIRE(offset.y > -1e-4);

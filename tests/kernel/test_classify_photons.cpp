@@ -106,9 +106,9 @@ Classified classify(const Arrivals& a, std::uint32_t event = 0, std::uint32_t br
     round.branches = branches;
     Program(test_device(), "classify_photons.cl")
         .kernel("classify_photons")
-        .launch(a.list.size(), round, pass_on_device(seed), on_device(a.list),
-                on_device(a.rays), on_device(a.hits), on_device(a.flux), on_device(a.triangles),
-                on_device(materials()), on_device(a.shapes), on_device(spectra()), points, ledgers, kinds);
+        .launch(a.list.size(), round, pass_on_device(seed), on_device(a.list), on_device(a.rays), on_device(a.hits),
+                on_device(a.flux), on_device(a.triangles), on_device(materials()), on_device(a.shapes),
+                on_device(spectra()), points, ledgers, kinds);
     return {kinds.download(), points.download(), ledgers.download()};
 }
 
@@ -128,13 +128,12 @@ std::uint32_t expected_event(const MaterialRecord& m, float draw, bool branches)
     if (branches && m.medium != STOKES_NONE && m.reradiation_row != STOKES_NONE && m.fluorescent_fraction > 0.0f)
         return STOKES_EVENT_BRANCHES;
     const bool meets_fluorophore = draw < m.fluorescent_fraction;
-    if (meets_fluorophore)
-        return m.reradiation_row == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_FLUORESCENCE;
+    if (meets_fluorophore) return m.reradiation_row == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_FLUORESCENCE;
     return m.medium == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_ELASTIC;
 }
 
-void check_arrival(const Arrivals& a, const Classified& result, std::size_t entry,
-                   const std::vector<float>& draws, bool branches = false) {
+void check_arrival(const Arrivals& a, const Classified& result, std::size_t entry, const std::vector<float>& draws,
+                   bool branches = false) {
     const std::uint32_t path = a.list[entry];
     const PathLedger &before = a.ledgers[path], &after = result.ledgers[path];
     CAPTURE(entry, path);
@@ -170,8 +169,7 @@ void check_arrival(const Arrivals& a, const Classified& result, std::size_t entr
         facing < 0.0 ? expected_event(materials()[material], draws[path], branches) : STOKES_EVENT_NONE;
     CHECK(result.kinds[entry] == event);
     CHECK(after.fate == (event == STOKES_EVENT_NONE ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE));
-    CHECK(static_cast<double>(after.absorbed.energy) ==
-          Approx(event == STOKES_EVENT_NONE ? total : 0.0).epsilon(1e-6));
+    CHECK(static_cast<double>(after.absorbed.energy) == Approx(event == STOKES_EVENT_NONE ? total : 0.0).epsilon(1e-6));
 }
 
 // Of 2^18 paths that meet this material from the front.
@@ -210,16 +208,14 @@ Lists make_lists(const std::vector<std::uint32_t>& list, const std::vector<std::
     program.kernel("count_lists").launch(chunks, count, chunk_size, of, counts);
     program.kernel("scan_lists").launch(1, chunks, counts, totals);
     program.kernel("write_lists")
-        .launch(chunks, count, chunk_size, paths, of, counts, alive, diffuse, fluorescence, elastic,
-                branches);
-    return {totals.download().front(), alive.download(), diffuse.download(), fluorescence.download(),
-            elastic.download(), branches.download()};
+        .launch(chunks, count, chunk_size, paths, of, counts, alive, diffuse, fluorescence, elastic, branches);
+    return {totals.download().front(), alive.download(),   diffuse.download(),
+            fluorescence.download(),   elastic.download(), branches.download()};
 }
 
 // The paths of the kinds that count, in the order of the list, then nothing but what stood there.
-void check_list(const std::vector<std::uint32_t>& written, std::uint32_t count,
-                const std::vector<std::uint32_t>& list, const std::vector<std::uint8_t>& kinds,
-                const std::vector<int>& wanted) {
+void check_list(const std::vector<std::uint32_t>& written, std::uint32_t count, const std::vector<std::uint32_t>& list,
+                const std::vector<std::uint8_t>& kinds, const std::vector<int>& wanted) {
     std::vector<std::uint32_t> expected;
     for (std::size_t i = 0; i < list.size(); ++i)
         if (std::count(wanted.begin(), wanted.end(), int(kinds[i])) > 0) expected.push_back(list[i]);
@@ -276,8 +272,7 @@ TEST_CASE("many photons are classified as the rules say", "[classify_photons]") 
         ++fates[result.ledgers[a.list[entry]].fate];
     }
     for (const int count : kinds) CHECK(count > 100);
-    for (const int fate :
-         {STOKES_FATE_ALIVE, STOKES_FATE_ABSORBED, STOKES_FATE_ESCAPED, STOKES_FATE_OVERFLOW})
+    for (const int fate : {STOKES_FATE_ALIVE, STOKES_FATE_ABSORBED, STOKES_FATE_ESCAPED, STOKES_FATE_OVERFLOW})
         CHECK(fates[std::size_t(fate)] > 100);
 }
 

@@ -107,7 +107,8 @@ TEST_CASE("two densities have two radii", "[count_photons]") {
     constexpr std::uint32_t width = 40, height = 8;
     std::vector<GatherPoint> points;
     for (std::uint32_t i = 0; i < width * height; ++i) {
-        points.push_back(point_at(0.9f * (static_cast<float>(i % width) - 19.5f), static_cast<float>(i / width) - 3.5f));
+        points.push_back(
+            point_at(0.9f * (static_cast<float>(i % width) - 19.5f), static_cast<float>(i / width) - 3.5f));
         points.back().pixel = i;
     }
     const float spacing_mm = 0.5f;

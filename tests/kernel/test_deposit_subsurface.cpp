@@ -66,7 +66,7 @@ Exits sample(const SubsurfaceArrivals& a, const std::vector<std::uint32_t>& list
         .kernel("sample_exits")
         .launch(list.size(), round, pass_on_device(9, 0, offset_mm), on_device(list), on_device(a.points),
                 on_device(a.rays), on_device(materials), on_device(conserving_spectra()), on_device(tables.shapes),
-                on_device(tables.mean_rows), on_device(tables.cumulative_rows), on_device(std::vector<EventWords>(1)),
+                on_device(tables.mean_rows), on_device(tables.cumulative_rows), on_device(std::vector<EventSample>(1)),
                 exits, probes);
     return {exits.download(), probes.download()};
 }
@@ -95,8 +95,7 @@ void check_exit(const SubsurfaceArrivals& a, const Exits& e, std::size_t i, std:
         CHECK(probe.reach_mm < 0.0f);
         return;
     }
-    const glm::dvec3 n(p.nx, p.ny, p.nz),
-        offset = glm::dvec3(probe.x, probe.y, probe.z) - glm::dvec3(p.x, p.y, p.z);
+    const glm::dvec3 n(p.nx, p.ny, p.nz), offset = glm::dvec3(probe.x, probe.y, probe.z) - glm::dvec3(p.x, p.y, p.z);
     static const MadeUpTables tables;
     const TableShape shape = tables.shapes[material.medium * 3 + component];
     const double r = exit_point.r_mm, last = shape.r_first + shape.r_step * double(shape.r_count - 1);
@@ -118,8 +117,7 @@ void check_exits(std::uint32_t paths) {
         const Exits e = sample(a, list, round_of(component, list.size()));
         for (std::size_t i = 0; i < list.size(); ++i) check_exit(a, e, i, list[i], component);
         for (std::size_t i = 0; i < e.exits.size(); ++i)
-            if (i < before || i >= before + list.size())
-                CHECK((e.exits[i].path == empty && e.probes[i].body == empty));
+            if (i < before || i >= before + list.size()) CHECK((e.exits[i].path == empty && e.probes[i].body == empty));
     }
 }
 
@@ -135,7 +133,8 @@ std::vector<ExitPoint> given_exits(const SubsurfaceArrivals& a, const std::vecto
         const float r = subsurface ? 10.0f * float(component) + 2.5f * uniform(generator) : 0.0f;
         exits[before + i] = {p.x + 1, p.y,        p.z,  subsurface && i % 5 == 4 ? -std::max(r, FLT_MIN) : r,
                              p.nx,    p.ny,       p.nz, subsurface ? 90.0f * uniform(generator) : 0.0f,
-                             list[i], p.material, 0,    1,   {0, 0}, {0, 0}};
+                             list[i], p.material, 0,    1,
+                             {0, 0},  {0, 0}};
     }
     return exits;
 }
@@ -166,8 +165,8 @@ Deposits deposit(const SubsurfaceArrivals& a, const std::vector<ExitPoint>& give
     Program(test_device(), "deposit_subsurface.cl")
         .kernel("deposit_exits")
         .launch(count, round, pass_on_device(9), on_device(a.points), on_device(materials),
-                on_device(conserving_spectra()), on_device(tables.shapes), on_device(tables.at_wavelengths), exits, on_device(a.flux), ledgers,
-                heads, map_flux);
+                on_device(conserving_spectra()), on_device(tables.shapes), on_device(tables.at_wavelengths), exits,
+                on_device(a.flux), ledgers, heads, map_flux);
     return {exits.download(), ledgers.download(), heads.download(), map_flux.download()};
 }
 
@@ -195,8 +194,8 @@ Leaving leaving_twin(const ExitPoint& exit_point, const Flux16& incident, std::u
     }
     for (const double f : result.flux) result.converted += f;
     if (material.medium != STOKES_NONE) {
-        const auto power = tables.look_up(material.medium, component, std::abs(double(exit_point.r_mm)),
-                                          double(exit_point.row));
+        const auto power =
+            tables.look_up(material.medium, component, std::abs(double(exit_point.r_mm)), double(exit_point.row));
         for (std::size_t k = 0; k < 16; ++k) result.flux[k] *= power[k];
     }
     for (const double f : result.flux) result.kept += f;
@@ -236,8 +235,7 @@ void check_deposits(const SubsurfaceArrivals& a, std::uint32_t component) {
         }
     }
     for (std::size_t slot = 0; slot < d.heads.size(); ++slot)
-        if (slot < first_slot || slot >= end)
-            CHECK((d.heads[slot].normal == empty && d.flux[slot].v[0] == -1.0f));
+        if (slot < first_slot || slot >= end) CHECK((d.heads[slot].normal == empty && d.flux[slot].v[0] == -1.0f));
 }
 
 constexpr std::uint32_t components[] = {STOKES_MAP_FLUORESCENCE, STOKES_MAP_SINGLE, STOKES_MAP_MULTIPLE};
@@ -266,9 +264,9 @@ TEST_CASE("azimuths are uniform, and different for each component", "[deposit_su
             const SurfacePoint& p = a.points[list[i]];
             const Probe& probe = e.probes[before + i];
             if (probe.body == STOKES_NONE) continue;
-            const double turn = azimuth_about({p.nx, p.ny, p.nz},
-                                              {double(probe.x) - double(p.x), double(probe.y) - double(p.y),
-                                               double(probe.z) - double(p.z)});
+            const double turn = azimuth_about(
+                {p.nx, p.ny, p.nz},
+                {double(probe.x) - double(p.x), double(probe.y) - double(p.y), double(probe.z) - double(p.z)});
             azimuths[component].push_back(turn);
             counts[std::min(std::size_t(turn * 64.0), std::size_t{63})] += 1.0;
         }
@@ -282,8 +280,8 @@ TEST_CASE("azimuths are uniform, and different for each component", "[deposit_su
     CHECK(chi_square_uniform(pairs) > level);
 }
 
-// The foot of the first collision lies way sin(theta) along the refracted ray, the exit at r from it; a direct exit is as
-// far from the collision as its row says, and its scale is half the range of cosines times the transmittance.
+// The foot of the first collision lies way sin(theta) along the refracted ray, the exit at r from it; a direct exit is
+// as far from the collision as its row says, and its scale is half the range of cosines times the transmittance.
 TEST_CASE("conserving exits lie about the foot of the first collision", "[deposit_subsurface][tiny]") {
     const SubsurfaceArrivals a(120);
     for (const float exit_scale : {0.0f, 1.1f})
@@ -301,7 +299,8 @@ TEST_CASE("conserving exits lie about the foot of the first collision", "[deposi
                 const Probe& probe = e.probes[before + i];
                 const glm::dvec3 n(p.nx, p.ny, p.nz), entry(p.x, p.y, p.z), d = direction_of(a.rays[path]);
                 const double eta = double(material.eta), cos_in = -glm::dot(d, n), way = double(exit_point.way_mm);
-                const double cos_within = std::sqrt(1.0 - (1.0 - cos_in * cos_in) / (eta * eta)), depth = way * cos_within;
+                const double cos_within = std::sqrt(1.0 - (1.0 - cos_in * cos_in) / (eta * eta)),
+                             depth = way * cos_within;
                 const glm::dvec3 foot = entry + (d + cos_in * n) / eta * way;
                 const glm::dvec3 at(probe.x, probe.y, probe.z);
                 const double r = double(exit_point.r_mm), row = double(exit_point.row);
@@ -394,8 +393,8 @@ TEST_CASE("exits are put where their probe hit, others are marked and keep their
         // The point of the plane above the hit, at a signed distance along a normal of the probe's own.
         const glm::vec3 normal(0.6f, 0.0f, -0.8f);
         const glm::vec3 on_plane = glm::vec3(point_on(triangles[i % 2], 0.25, 0.5)) + 0.1f * normal;
-        probes[i] = {on_plane.x, on_plane.y, on_plane.z, 1.0f, normal.x, normal.y, normal.z,
-                     i % 4 == 3 ? STOKES_NONE : 1u};
+        probes[i] = {on_plane.x, on_plane.y, on_plane.z, 1.0f,
+                     normal.x,   normal.y,   normal.z,   i % 4 == 3 ? STOKES_NONE : 1u};
         hits[i] = {0.1f, 0.25f, 0.5f, i % 4 == 2 ? STOKES_NONE : i % 2};
         given[i] = {9, 9, 9, i == 2 ? 0.0f : 0.5f * float(i), 0, 0, 1, 30, i, 1, 0, 1, {0, 0}, {0, 0}};
     }
@@ -406,8 +405,7 @@ TEST_CASE("exits are put where their probe hit, others are marked and keep their
     const std::vector<ExitPoint> placed = buffer.download();
     for (std::uint32_t i = 0; i < 80; ++i) {
         CAPTURE(i);
-        const glm::dvec3 at(placed[i].x, placed[i].y, placed[i].z),
-            n(placed[i].nx, placed[i].ny, placed[i].nz);
+        const glm::dvec3 at(placed[i].x, placed[i].y, placed[i].z), n(placed[i].nx, placed[i].ny, placed[i].nz);
         CHECK((placed[i].path == i && placed[i].row == 30.0f));
         if (i >= 78 || i % 4 == 3) {  // beyond the count, or without a probe
             CHECK((at == glm::dvec3(9) && placed[i].r_mm == given[i].r_mm));
@@ -478,8 +476,8 @@ TEST_CASE("conserving deposits are those of the first collision and its way out"
                 given[before + i].row *= sampler == STOKES_SAMPLER_DIRECT ? 0.02f : 1.0f;
             }
             const std::size_t end = first_slot + list.size();
-            const Deposits d = deposit(a, given, list.size(), component, std::uint32_t(end), end, sampler, materials,
-                                       branches);
+            const Deposits d =
+                deposit(a, given, list.size(), component, std::uint32_t(end), end, sampler, materials, branches);
             for (std::size_t i = 0; i < list.size(); ++i) {
                 const ExitPoint& exit_point = d.exits[before + i];
                 const MaterialRecord& material = materials[exit_point.material];
@@ -509,8 +507,8 @@ TEST_CASE("conserving deposits are those of the first collision and its way out"
                         else if (ex == em)
                             sent_on[em] = taken_up[em] * double(albedo.v[em]);
                 const auto power = below && sampler == STOKES_SAMPLER_SCATTERED
-                                       ? tables.look_up(material.medium, component,
-                                                        std::abs(double(exit_point.r_mm)), double(exit_point.row))
+                                       ? tables.look_up(material.medium, component, std::abs(double(exit_point.r_mm)),
+                                                        double(exit_point.row))
                                        : std::array<double, 16>{};
                 double event = 0.0;
                 CAPTURE(fluorescent, sampler, i, p, exit_point.material);
@@ -533,15 +531,13 @@ TEST_CASE("conserving deposits are those of the first collision and its way out"
 TEST_CASE("nothing is deposited beyond the last slot", "[deposit_subsurface][tiny]") {
     const SubsurfaceArrivals a(90);
     const std::vector<ExitPoint> given = given_exits(a, a.fluorescence, STOKES_MAP_FLUORESCENCE);
-    const Deposits d =
-        deposit(a, given, a.fluorescence.size(), STOKES_MAP_FLUORESCENCE, first_slot + 11, 100);
+    const Deposits d = deposit(a, given, a.fluorescence.size(), STOKES_MAP_FLUORESCENCE, first_slot + 11, 100);
     for (std::size_t slot = 0; slot < 100; ++slot) {
         const bool used = slot >= first_slot && slot < first_slot + 11;
         CHECK((d.heads[slot].normal != empty) == used);
         CHECK((d.flux[slot].v[0] != -1.0f) == used);
     }
-    for (std::size_t i = 11; i < a.fluorescence.size(); ++i)
-        CHECK(d.ledgers[a.fluorescence[i]].stored.energy == 0.0f);
+    for (std::size_t i = 11; i < a.fluorescence.size(); ++i) CHECK(d.ledgers[a.fluorescence[i]].stored.energy == 0.0f);
 }
 
 // A fluorophore without any excitation in the pass: no photon, but a slot.

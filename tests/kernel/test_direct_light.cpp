@@ -15,8 +15,9 @@ namespace {
 
 constexpr double reflectance = 0.5;
 
-// Shapes without reflectance, lights on and between them, and points that the camera sees, one a pixel. Lights have power
-// at the first wavelength alone, which is all that the film's X takes; emission is radiance, or irradiance across a beam.
+// Shapes without reflectance, lights on and between them, and points that the camera sees, one a pixel. Lights have
+// power at the first wavelength alone, which is all that the film's X takes; emission is radiance, or irradiance across
+// a beam.
 class Bench {
   public:
     Bench() { materials_.push_back({0, 0, 0, STOKES_NONE}); }
@@ -40,19 +41,22 @@ class Bench {
         glm::dvec3 centre(0.0);
         for (std::uint32_t t = 0; t < light.triangle_count; ++t) {
             const Triangle& tri = triangles_[light.first_triangle + t];
-            area += 0.5 * glm::length(glm::cross(glm::dvec3(tri.e1x, tri.e1y, tri.e1z), glm::dvec3(tri.e2x, tri.e2y, tri.e2z)));
+            area += 0.5 * glm::length(
+                              glm::cross(glm::dvec3(tri.e1x, tri.e1y, tri.e1z), glm::dvec3(tri.e2x, tri.e2y, tri.e2z)));
             areas_.push_back(static_cast<float>(area));
         }
-        for (const glm::vec3& p : mesh.positions_mm) centre += glm::dvec3(p) / static_cast<double>(mesh.positions_mm.size());
-        light.px = static_cast<float>(centre.x), light.py = static_cast<float>(centre.y), light.pz = static_cast<float>(centre.z);
+        for (const glm::vec3& p : mesh.positions_mm)
+            centre += glm::dvec3(p) / static_cast<double>(mesh.positions_mm.size());
+        light.px = static_cast<float>(centre.x), light.py = static_cast<float>(centre.y),
+        light.pz = static_cast<float>(centre.z);
         for (const glm::vec3& p : mesh.positions_mm)
             light.ball_mm = std::max(light.ball_mm, static_cast<float>(glm::length(glm::dvec3(p) - centre)));
         add_light(light, radiance, power);
     }
 
     // A beam through half-axes about a centre.
-    void add_beam(std::uint32_t kind, const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, double irradiance,
-                  double power = 1.0) {
+    void add_beam(std::uint32_t kind, const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v,
+                  double irradiance, double power = 1.0) {
         const glm::vec3 d(glm::normalize(glm::cross(u, v))), p(centre), a(u), b(v);
         LightRecord light{};
         light.kind = kind;
@@ -69,7 +73,8 @@ class Bench {
         pass.seed = 3;
         pass.pass = pass_index;
         for (const Triangle& t : triangles_)  // as DeviceScene has it
-            pass.offset_mm = std::max(pass.offset_mm, 4e-6f * std::max({std::abs(t.v0x), std::abs(t.v0y), std::abs(t.v0z)}));
+            pass.offset_mm =
+                std::max(pass.offset_mm, 4e-6f * std::max({std::abs(t.v0x), std::abs(t.v0y), std::abs(t.v0z)}));
         pass.to_x[0] = 1.0f;
         for (std::uint32_t i = 0; i < points.size(); ++i) points[i].pixel = i;
         const auto count = static_cast<std::uint32_t>(points.size());
@@ -89,10 +94,10 @@ class Bench {
         const Buffer<FilmValue> film = on_device(std::vector<FilmValue>(4 * points.size(), FilmValue{0, 0, 0, 0}));
         rays.kernels.program(test_device(), "direct_light.cl")
             .kernel("add_direct_light")
-            .launch(count, on_device(points), count, on_device(std::vector<PassConstants>{pass}), rays.nodes, rays.blocks,
-                    rays.grid, on_device(triangles_), on_device(shapes_), static_cast<std::uint32_t>(lights.size()),
-                    on_device(lights), on_device(areas), on_device(emission_), on_device(std::vector<Flux16>{dim, white}),
-                    on_device(materials_), film);
+            .launch(count, on_device(points), count, on_device(std::vector<PassConstants>{pass}), rays.nodes,
+                    rays.blocks, rays.grid, on_device(triangles_), on_device(shapes_),
+                    static_cast<std::uint32_t>(lights.size()), on_device(lights), on_device(areas),
+                    on_device(emission_), on_device(std::vector<Flux16>{dim, white}), on_device(materials_), film);
         const std::vector<FilmValue> values = film.download();
         std::vector<double> result;
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -150,7 +155,8 @@ TEST_CASE("a beam brings its irradiance times the cosine, within its section", "
         CAPTURE(disk);
         Bench bench;
         bench.add_mesh(make_rectangle(100.0, 100.0));
-        const glm::dvec3 d = glm::normalize(glm::dvec3(0.5, -1.0, 0.2)), u = 3.0 * glm::normalize(glm::cross(d, {0.1, 0.3, 1.0})),
+        const glm::dvec3 d = glm::normalize(glm::dvec3(0.5, -1.0, 0.2)),
+                         u = 3.0 * glm::normalize(glm::cross(d, {0.1, 0.3, 1.0})),
                          v = 2.0 * glm::normalize(glm::cross(d, u));
         bench.add_beam(disk ? STOKES_LIGHT_BEAM_DISK : STOKES_LIGHT_BEAM_RECTANGLE, -10.0 * d, u, v, 4.0);
         std::vector<GatherPoint> points;
@@ -179,15 +185,15 @@ TEST_CASE("beams light the side they fall on, until something is in their way", 
     Bench bench;
     bench.add_mesh(make_rectangle(100.0, 100.0));
     bench.add_beam(STOKES_LIGHT_BEAM_DISK, {0.0, 10.0, 0.0}, u, v, 1.0);
-    bench.add_mesh(moved(make_rectangle(1.0, 1.0), {2.0, 5.0, 0.0}));   // in the way
-    bench.add_mesh(moved(make_rectangle(1.0, 1.0), {-2.0, 11.0, 0.0})); // behind the section
-    bench.add_mesh(moved(make_rectangle(1.0, 1.0), {0.0, -3.0, 0.0}));  // beyond the plate
+    bench.add_mesh(moved(make_rectangle(1.0, 1.0), {2.0, 5.0, 0.0}));    // in the way
+    bench.add_mesh(moved(make_rectangle(1.0, 1.0), {-2.0, 11.0, 0.0}));  // behind the section
+    bench.add_mesh(moved(make_rectangle(1.0, 1.0), {0.0, -3.0, 0.0}));   // beyond the plate
     GatherPoint translucent = point_at({0.0, 0.0, 0.0});
     translucent.maps = 1u << STOKES_MAP_FLUORESCENCE;
     const std::vector<double> found =
-        bench.light_at({point_at({0.0, 0.0, 0.0}), point_at({0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}), point_at({2.0, 0.0, 0.0}),
-                        point_at({2.0, 5.0, 0.0}), point_at({-2.0, 0.0, 0.0}), point_at({0.0, -3.0, 0.0}),
-                        point_at({0.0, 12.0, 0.0}), translucent});
+        bench.light_at({point_at({0.0, 0.0, 0.0}), point_at({0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}),
+                        point_at({2.0, 0.0, 0.0}), point_at({2.0, 5.0, 0.0}), point_at({-2.0, 0.0, 0.0}),
+                        point_at({0.0, -3.0, 0.0}), point_at({0.0, 12.0, 0.0}), translucent});
     const double lit = reflectance / M_PI;
     const double expected[] = {lit, 0.0, 0.0, lit, lit, 0.0, 0.0, 0.0};
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -196,9 +202,9 @@ TEST_CASE("beams light the side they fall on, until something is in their way", 
     }
 }
 
-// An element on the axis of a disk of radius r at height h that emits L: E = pi L r^2 / (r^2 + h^2), times the cosine of
-// its tilt while the whole disk is above its horizon. A regular polygon of 256 corners has 1e-4 less. Below
-// the square root of its area, h is near and the cosine is drawn, too. Eight comparisons at 4 standard errors.
+// An element on the axis of a disk of radius r at height h that emits L: E = pi L r^2 / (r^2 + h^2), times the cosine
+// of its tilt while the whole disk is above its horizon. A regular polygon of 256 corners has 1e-4 less. Below the
+// square root of its area, h is near and the cosine is drawn, too. Eight comparisons at 4 standard errors.
 TEST_CASE("a disk lights a point on its axis by its form factor", "[direct_light]") {
     const double r = 10.0;
     for (const double h : {0.2, 4.0, 15.0, 19.0, 60.0, 1000.0})
@@ -208,7 +214,8 @@ TEST_CASE("a disk lights a point on its axis by its form factor", "[direct_light
             Bench bench;
             bench.add_mesh(make_rectangle(100.0, 100.0));
             bench.add_lamp(facing_down(make_disk(r, 256), {0.0, h, 0.0}), 2.0);
-            const Sample sample = bench.sample_at(point_at({0.0, 0.0, 0.0}, {std::sin(tilt), std::cos(tilt), 0.0}), 40000);
+            const Sample sample =
+                bench.sample_at(point_at({0.0, 0.0, 0.0}, {std::sin(tilt), std::cos(tilt), 0.0}), 40000);
             const double expected = reflectance * 2.0 * r * r / (r * r + h * h) * std::cos(tilt);
             CAPTURE(sample.mean(), expected, sample.standard_error());
             CHECK(std::abs(sample.mean() - expected) < 4.0 * sample.standard_error() + 2.5e-4 * expected);
@@ -256,8 +263,8 @@ TEST_CASE("light close by has no rare bright draws", "[direct_light]") {
     }
 }
 
-// 40 lamps and beams: what each brings is known, and 16 are drawn. Under a lamp, 3 mm below it, and far from all; there the
-// beams start below. 4 standard errors.
+// 40 lamps and beams: what each brings is known, and 16 are drawn. Under a lamp, 3 mm below it, and far from all; there
+// the beams start below. 4 standard errors.
 TEST_CASE("of many lights some are drawn, and the mean is the sum of all", "[direct_light]") {
     const double h = 60.0, r = 5.0;
     for (const glm::dvec3& at : {glm::dvec3(0.0, 0.0, 0.0), glm::dvec3(0.0, 57.0, 12.0)}) {
@@ -269,7 +276,8 @@ TEST_CASE("of many lights some are drawn, and the mean is the sum of all", "[dir
             if (i % 4 == 0) {
                 const double angle = 0.02 * i;
                 const glm::dvec3 u(5.0 * std::cos(angle), 5.0 * std::sin(angle), 0.0), v(0.0, 0.0, 5.0);
-                bench.add_beam(STOKES_LIGHT_BEAM_RECTANGLE, -30.0 * glm::normalize(glm::cross(u, v)), u, v, value, power);
+                bench.add_beam(STOKES_LIGHT_BEAM_RECTANGLE, -30.0 * glm::normalize(glm::cross(u, v)), u, v, value,
+                               power);
                 if (at.y == 0.0) expected += value * std::cos(angle);
             } else {
                 const double x = 12.0 * (i % 9 - 4), z = 12.0 * (i % 8 - 4), radiance = 100.0 * value;

@@ -58,8 +58,7 @@ std::vector<LightRecord> lights() {
 std::vector<Flux16> photon_flux() {
     std::vector<Flux16> rows(5, constant_flux(0.0f));
     for (std::size_t i = 1; i < rows.size(); ++i)
-        for (std::size_t k = 0; k < 16; ++k)
-            rows[i].v[k] = static_cast<float>(i) + 0.01f * static_cast<float>(k);
+        for (std::size_t k = 0; k < 16; ++k) rows[i].v[k] = static_cast<float>(i) + 0.01f * static_cast<float>(k);
     return rows;
 }
 
@@ -72,11 +71,11 @@ struct Emitted {
     std::vector<Flux16> flux;
     std::vector<PathLedger> ledgers;
     std::vector<std::uint32_t> list;
-    std::vector<std::size_t> light;  // by the flux they carry
-    std::vector<double> weight;           // on that flux
+    std::vector<std::size_t> light;        // by the flux they carry
+    std::vector<double> weight;            // on that flux
     std::vector<std::uint32_t> cell = {};  // of emit_stratified
     std::vector<Place> place = {};
-    std::vector<EventWords> words = {};
+    std::vector<EventSample> words = {};
 };
 
 // The light whose photons carry this flux, times a weight.
@@ -92,7 +91,8 @@ std::size_t light_of_flux(const Flux16& flux, float weight) {
 
 // With cells: by emit_stratified, else at random.
 // Buffers are ten paths longer than asked for; what stands there must stay.
-Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cells = nullptr, std::uint32_t pass_index = 2) {
+Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cells = nullptr,
+             std::uint32_t pass_index = 2) {
     const std::size_t room = photons + 10;
     const std::vector<Triangle> all = triangles();
     std::vector<float> areas = {7.0f, 9.0f};  // of another light
@@ -109,19 +109,19 @@ Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cel
     pass.upload(&constants, 1);
     std::vector<std::uint32_t> first, cell_of_path;
     std::vector<Place> places;
-    std::vector<EventWords> words;
+    std::vector<EventSample> words;
     if (cells) {
         first = cells->first_photons(seed, pass_index);
         const Buffer<EmissionCell> records = on_device(cells->records());
         const Buffer<std::uint32_t> starts = on_device(first), owners(test_device(), "cells", photons);
         const Buffer<Place> at(test_device(), "places", photons);
-        const Buffer<EventWords> event_words =
-            on_device(std::vector<EventWords>(room, EventWords{sentinel, sentinel}));
+        const Buffer<EventSample> event_samples =
+            on_device(std::vector<EventSample>(room, EventSample{sentinel, sentinel}));
         const auto count = static_cast<std::uint32_t>(cells->records().size());
         program.kernel("emit_stratified")
             .launch(photons, pass, count, records, starts, on_device(lights()), on_device(areas), on_device(all),
-                    on_device(photon_flux()), rays, flux, ledgers, list, event_words);
-        words = event_words.download();
+                    on_device(photon_flux()), rays, flux, ledgers, list, event_samples);
+        words = event_samples.download();
         program.kernel("find_places").launch(photons, pass, count, records, starts, on_device(lights()), owners, at);
         cell_of_path = owners.download();
         places = at.download();
@@ -130,12 +130,21 @@ Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cel
             .launch(photons, pass, 5u, on_device(lights()), on_device(areas), on_device(all), on_device(photon_flux()),
                     rays, flux, ledgers, list);
     }
-    Emitted result{rays.download(photons), flux.download(photons), ledgers.download(photons), list.download(), {}, {}, cell_of_path, places, words};
+    Emitted result{rays.download(photons),
+                   flux.download(photons),
+                   ledgers.download(photons),
+                   list.download(),
+                   {},
+                   {},
+                   cell_of_path,
+                   places,
+                   words};
     for (std::uint32_t i = 0; i < photons; ++i) {
         float weight = 1.0f;
         if (cells) {
             const std::uint32_t c = cell_of_path[i];
-            weight = cells->records()[c].probability * static_cast<float>(photons) / static_cast<float>(first[c + 1] - first[c]);
+            weight = cells->records()[c].probability * static_cast<float>(photons) /
+                     static_cast<float>(first[c + 1] - first[c]);
         }
         result.weight.push_back(static_cast<double>(weight));
         result.light.push_back(light_of_flux(result.flux[i], weight));
@@ -189,15 +198,13 @@ TEST_CASE("every photon starts as its light says", "[emit_photons][tiny]") {
         }
     }
     for (std::size_t i = photons; i < emitted.list.size(); ++i) CHECK(emitted.list[i] == sentinel);
-    for (const std::size_t light : {dark_light, surface_light, disk_light, rectangle_light})
-        CHECK(seen[light] > 0);
+    for (const std::size_t light : {dark_light, surface_light, disk_light, rectangle_light}) CHECK(seen[light] > 0);
 }
 
 // In all the cases below together seven chi-square tests, wrong once in 1000; the sums at 4 standard errors.
 const double level = sidak_level(1e-3, 7);
 
-TEST_CASE("lights are chosen by their probability, and their photons add up to their flux",
-          "[emit_photons]") {
+TEST_CASE("lights are chosen by their probability, and their photons add up to their flux", "[emit_photons]") {
     constexpr std::uint32_t photons = 1u << 18;
     const Emitted emitted = emit(photons, 2);
     std::vector<double> counts(5, 0.0), expected;
@@ -220,8 +227,7 @@ TEST_CASE("lights are chosen by their probability, and their photons add up to t
 
 // Cells: 8 x 8 steps of the barycentric coordinates, of which those on the diagonal belong to the triangle by
 // half.
-TEST_CASE("surface photons start uniformly over the area, cosine-distributed to the front",
-          "[emit_photons]") {
+TEST_CASE("surface photons start uniformly over the area, cosine-distributed to the front", "[emit_photons]") {
     const Emitted emitted = emit(1u << 18, 3);
     const std::vector<Triangle> all = triangles();
     constexpr int steps = 8;
@@ -253,13 +259,11 @@ TEST_CASE("surface photons start uniformly over the area, cosine-distributed to 
 TEST_CASE("beams are parallel and fill their cross-section evenly", "[emit_photons]") {
     const Emitted emitted = emit(1u << 18, 4);
     const LightRecord beam = lights()[disk_light];
-    const glm::dvec3 centre(beam.px, beam.py, beam.pz), u(beam.ux, beam.uy, beam.uz),
-        v(beam.vx, beam.vy, beam.vz);
+    const glm::dvec3 centre(beam.px, beam.py, beam.pz), u(beam.ux, beam.uy, beam.uz), v(beam.vx, beam.vy, beam.vz);
     constexpr int steps = 16;
     std::vector<double> disk(steps * steps, 0.0), rectangle(steps * steps, 0.0);
     const auto cell = [](double x, double y) {  // of the unit square
-        return std::size_t(std::clamp(int(x * steps), 0, steps - 1) * steps +
-                           std::clamp(int(y * steps), 0, steps - 1));
+        return std::size_t(std::clamp(int(x * steps), 0, steps - 1) * steps + std::clamp(int(y * steps), 0, steps - 1));
     };
     for (std::size_t i = 0; i < emitted.rays.size(); ++i) {
         const std::size_t light = emitted.light[i];
@@ -295,7 +299,8 @@ EmissionCells aimed_cells(std::uint32_t photons) {
         const double u = static_cast<double>(uniform(generator));
         sample.light = u < 0.05 ? dark_light : u < 0.55 ? surface_light : u < 0.8 ? disk_light : rectangle_light;
         for (float& x : sample.place) x = uniform(generator);
-        sample.square = std::exp(-5.0 * static_cast<double>(sample.place[0] + (sample.light == surface_light ? sample.place[2] : 0.0f)));
+        sample.square = std::exp(
+            -5.0 * static_cast<double>(sample.place[0] + (sample.light == surface_light ? sample.place[2] : 0.0f)));
         samples.push_back(sample);
     }
     return EmissionCells::aimed(emitting, samples, 0.2, 64, photons);
@@ -329,11 +334,12 @@ TEST_CASE("stratified photons start as their cells say", "[emit_photons][tiny]")
     for (std::size_t i = photons; i < emitted.list.size(); ++i) CHECK(emitted.list[i] == sentinel);
 }
 
-// Of n points of a sequence that follow one another all but those at both ends come in groups of 8, one in each eighth; of
-// either end there is one in an eighth or none. Of random ones 4096 in 8 steps are off by 21.
-TEST_CASE("coordinates of a photon's first event are even over its cell, and not those of its place", "[emit_photons]") {
+// Of n points of a sequence that follow one another all but those at both ends come in groups of 8, one in each eighth;
+// of either end there is one in an eighth or none. Of random ones 4096 in 8 steps are off by 21.
+TEST_CASE("coordinates of a photon's first event are even over its cell, and not those of its place",
+          "[emit_photons]") {
     constexpr std::uint32_t photons = 1u << 15;
-    const EmissionCells cells = EmissionCells::even(emitting, photons);
+    const EmissionCells cells = EmissionCells::stratified(emitting, photons);
     for (const std::uint32_t pass : {0u, 3u}) {
         const Emitted emitted = emit(photons, 4, &cells, pass);
         for (std::size_t i = photons; i < emitted.words.size(); ++i)
@@ -367,21 +373,23 @@ TEST_CASE("coordinates of a photon's first event are even over its cell, and not
     }
 }
 
-// Weighted, the photons are those of random emission: where they start and whereto they go, in boxes of the light, and their
-// moments. 12 passes of their own seeds give the errors of some 150 sums; 4.5 standard errors of 11 degrees of freedom are exceeded
-// by one of them in 8 choices of the seeds.
+// Weighted, the photons are those of random emission: where they start and whereto they go, in boxes of the light, and
+// their moments. 12 passes of their own seeds give the errors of some 150 sums; 4.5 standard errors of 11 degrees of
+// freedom are exceeded by one of them in 8 choices of the seeds.
 TEST_CASE("weighted by their cells, stratified photons are spread as random ones", "[emit_photons]") {
     constexpr std::uint32_t photons = 1u << 15, seeds = 12;
-    for (const EmissionCells& cells : {EmissionCells::even(emitting, photons), aimed_cells(photons)}) {
+    for (const EmissionCells& cells : {EmissionCells::stratified(emitting, photons), aimed_cells(photons)}) {
         constexpr std::size_t wedges = 8, rings = 4, bins = 24;
         std::vector<Sample> disk(wedges * rings), cosine(bins), turn(bins), places(3 * 16), rectangle(16), joint(3 * 4);
         for (std::uint32_t seed = 0; seed < seeds; ++seed) {
             const Emitted emitted = emit(photons, 100 + seed, &cells);
             std::vector<double> on_disk(disk.size(), 0.0), by_cosine(bins, 0.0), by_turn(bins, 0.0);
-            std::vector<double> by_place(places.size(), 0.0), on_rectangle(rectangle.size(), 0.0), by_both(joint.size(), 0.0);
+            std::vector<double> by_place(places.size(), 0.0), on_rectangle(rectangle.size(), 0.0),
+                by_both(joint.size(), 0.0);
             const std::vector<Triangle> all = triangles();
             const LightRecord beam = lights()[disk_light];
-            const glm::dvec3 centre(beam.px, beam.py, beam.pz), u(beam.ux, beam.uy, beam.uz), v(beam.vx, beam.vy, beam.vz);
+            const glm::dvec3 centre(beam.px, beam.py, beam.pz), u(beam.ux, beam.uy, beam.uz),
+                v(beam.vx, beam.vy, beam.vz);
             for (std::size_t i = 0; i < photons; ++i) {
                 const double w = emitted.weight[i] / photons;
                 if (emitted.light[i] == disk_light) {
@@ -389,7 +397,8 @@ TEST_CASE("weighted by their cells, stratified photons are spread as random ones
                     const double a = glm::dot(p, u) / glm::dot(u, u), b = glm::dot(p, v) / glm::dot(v, v);
                     REQUIRE(a * a + b * b < 1.0 + 1e-5);
                     const auto ring = std::min(std::size_t((a * a + b * b) * rings), rings - 1);
-                    const auto wedge = std::min(std::size_t((0.5 + std::atan2(b, a) / (2.0 * M_PI)) * wedges), wedges - 1);
+                    const auto wedge =
+                        std::min(std::size_t((0.5 + std::atan2(b, a) / (2.0 * M_PI)) * wedges), wedges - 1);
                     on_disk[ring * wedges + wedge] += w;
                 } else if (emitted.light[i] == surface_light) {
                     double s = 0.0, t = 0.0;
@@ -408,8 +417,10 @@ TEST_CASE("weighted by their cells, stratified photons are spread as random ones
                     by_both[(k - 1) * 4 + (left * left > 0.5 ? 2u : 0u) + (mu * mu > 0.5 ? 1u : 0u)] += w;
                 } else if (emitted.light[i] == rectangle_light) {
                     const glm::dvec3 p = origin_of(emitted.rays[i]) - centre;
-                    const double a = 0.5 + 0.5 * glm::dot(p, u) / glm::dot(u, u), b = 0.5 + 0.5 * glm::dot(p, v) / glm::dot(v, v);
-                    on_rectangle[std::min(std::size_t(a * 4.0), std::size_t{3}) * 4 + std::min(std::size_t(b * 4.0), std::size_t{3})] += w;
+                    const double a = 0.5 + 0.5 * glm::dot(p, u) / glm::dot(u, u),
+                                 b = 0.5 + 0.5 * glm::dot(p, v) / glm::dot(v, v);
+                    on_rectangle[std::min(std::size_t(a * 4.0), std::size_t{3}) * 4 +
+                                 std::min(std::size_t(b * 4.0), std::size_t{3})] += w;
                 }
             }
             for (std::size_t k = 0; k < disk.size(); ++k) disk[k].add(on_disk[k]);
@@ -430,23 +441,27 @@ TEST_CASE("weighted by their cells, stratified photons are spread as random ones
         for (std::size_t k = 0; k < places.size(); ++k) check(places[k], 0.5 * area[k / 16] / 16.0);
         for (std::size_t k = 0; k < joint.size(); ++k) check(joint[k], 0.5 * area[k / 4] / 4.0);
         for (const Sample& sample : rectangle) check(sample, 0.2 / 16.0);
-        for (const Sample& sample : disk) CHECK(std::abs(sample.mean() - 0.25 / 32.0) < 4.5 * sample.standard_error() + 1e-5);
-        for (const Sample& sample : cosine) CHECK(std::abs(sample.mean() - 0.5 / bins) < 4.5 * sample.standard_error() + 1e-5);
-        for (const Sample& sample : turn) CHECK(std::abs(sample.mean() - 0.5 / bins) < 4.5 * sample.standard_error() + 1e-5);
+        for (const Sample& sample : disk)
+            CHECK(std::abs(sample.mean() - 0.25 / 32.0) < 4.5 * sample.standard_error() + 1e-5);
+        for (const Sample& sample : cosine)
+            CHECK(std::abs(sample.mean() - 0.5 / bins) < 4.5 * sample.standard_error() + 1e-5);
+        for (const Sample& sample : turn)
+            CHECK(std::abs(sample.mean() - 0.5 / bins) < 4.5 * sample.standard_error() + 1e-5);
     }
 }
 
-// A sequence whose aligned runs of 2^m points have one in each of 2^m boxes: in each of 8 x 8 squares of the rectangle a
-// pass has 51 photons and 16 passes have 819, give or take a few; of random ones the roots, 7 and 29.
+// A sequence whose aligned runs of 2^m points have one in each of 2^m boxes: in each of 8 x 8 squares of the rectangle
+// a pass has 51 photons and 16 passes have 819, give or take a few; of random ones the roots, 7 and 29.
 TEST_CASE("stratified photons lie evenly in a pass and over passes", "[emit_photons]") {
     constexpr std::uint32_t photons = 1u << 14, passes = 16;
-    const EmissionCells cells = EmissionCells::even(emitting, photons);
+    const EmissionCells cells = EmissionCells::stratified(emitting, photons);
     const auto counts_of = [&](std::uint32_t pass) {
         const Emitted emitted = emit(photons, 9, &cells, pass);
         std::vector<double> counts(64, 0.0);
         for (std::size_t i = 0; i < photons; ++i)
             if (emitted.light[i] == rectangle_light)
-                counts[std::size_t(emitted.place[i].at[0] * 8.0f) * 8 + std::size_t(emitted.place[i].at[1] * 8.0f)] += 1.0;
+                counts[std::size_t(emitted.place[i].at[0] * 8.0f) * 8 + std::size_t(emitted.place[i].at[1] * 8.0f)] +=
+                    1.0;
         return counts;
     };
     const double mean = 0.2 * photons / 64.0;

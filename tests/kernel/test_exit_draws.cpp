@@ -27,12 +27,12 @@ EventRound round_of(std::uint32_t component, std::size_t count) {
     return round;
 }
 
-// Of the elastic paths. even: PassConstants.even_exits; words by path.
-Exits sample(const SubsurfaceArrivals& a, const EventRound& round, bool even, const std::vector<EventWords>& words) {
+// Of the elastic paths. even: PassConstants.low_discrepancy_exits; words by path.
+Exits sample(const SubsurfaceArrivals& a, const EventRound& round, bool even, const std::vector<EventSample>& words) {
     static const MadeUpTables tables;
     const Buffer<PassConstants> pass = pass_on_device(9);
     PassConstants constants = pass.download().front();
-    constants.even_exits = even ? 1 : 0;
+    constants.low_discrepancy_exits = even ? 1 : 0;
     pass.upload(&constants, 1);
     const Buffer<ExitPoint> exits(test_device(), "exits", a.elastic.size());
     const Buffer<Probe> probes(test_device(), "probes", a.elastic.size());
@@ -67,9 +67,9 @@ TEST_CASE("distances drawn from another density have the weight of the table's o
     const SubsurfaceArrivals a(60000);
     for (const std::uint32_t component : components) {
         EventRound round = round_of(component, a.elastic.size());
-        const Exits plain = sample(a, round, false, {EventWords{}});
+        const Exits plain = sample(a, round, false, {EventSample{}});
         round.drawn_rows = tables.drawn_rows;
-        const Exits e = sample(a, round, false, {EventWords{}});
+        const Exits e = sample(a, round, false, {EventSample{}});
         std::array<std::array<Sample, 16>, 2> differences;
         for (std::size_t i = 0; i < e.exits.size(); ++i) {
             const ExitPoint& exit_point = e.exits[i];
@@ -84,8 +84,8 @@ TEST_CASE("distances drawn from another density have the weight of the table's o
             const double first = static_cast<double>(shape.r_first), step = static_cast<double>(shape.r_step);
             for (unsigned cell = 0; cell + 1 < shape.r_count; ++cell) {
                 const double begin = first + cell * step;
-                const double expected = 0.5 * step * (tables.density(table, row, begin, 0) +
-                                                      tables.density(table, row, begin + step, 0));
+                const double expected =
+                    0.5 * step * (tables.density(table, row, begin, 0) + tables.density(table, row, begin + step, 0));
                 const bool inside = r >= begin && r < begin + step;
                 const double weighted = inside ? static_cast<double>(exit_point.scale) : 0.0;
                 differences[exit_point.material][cell].add(weighted - expected);
@@ -104,7 +104,7 @@ TEST_CASE("the first event's exits follow the words of their photons", "[exit_dr
     SubsurfaceArrivals a(12000);
     for (SurfacePoint& p : a.points) p.nx = p.nz = 0.0f, p.ny = 1.0f;  // so that azimuths are from one axis
     for (Ray& ray : a.rays) ray.dy = -std::abs(ray.dy);
-    std::vector<EventWords> words(12000, EventWords{garbage, garbage});
+    std::vector<EventSample> words(12000, EventSample{garbage, garbage});
     for (std::uint32_t i = 0; i < a.elastic.size(); ++i) words[a.elastic[i]] = {i, i};
     const double n = static_cast<double>(a.elastic.size());
     std::array<std::vector<double>, 3> azimuths;
@@ -141,10 +141,11 @@ TEST_CASE("later events, and photons that start at random, do not read words", "
     const SubsurfaceArrivals a(150);
     for (const std::uint32_t component : components) {
         EventRound round = round_of(component, a.elastic.size());
-        const Exits first = sample(a, round, false, {EventWords{}}),
-                    words = sample(a, round, true, std::vector<EventWords>(150, EventWords{garbage, garbage}));
+        const Exits first = sample(a, round, false, {EventSample{}}),
+                    words = sample(a, round, true, std::vector<EventSample>(150, EventSample{garbage, garbage}));
         round.event = 1;
-        const Exits later = sample(a, round, false, {EventWords{}}), later_even = sample(a, round, true, {EventWords{}});
+        const Exits later = sample(a, round, false, {EventSample{}}),
+                    later_even = sample(a, round, true, {EventSample{}});
         for (std::size_t i = 0; i < first.exits.size(); ++i) {
             CHECK(later.exits[i].r_mm == later_even.exits[i].r_mm);
             CHECK(later.probes[i].x == later_even.probes[i].x);

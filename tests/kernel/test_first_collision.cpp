@@ -27,8 +27,8 @@ Collisions draw(const Flux16& sigma_t, const Flux16& uptake, const std::vector<F
     const Buffer<Flux16> weights(test_device(), "weights", std::size_t{3} * n);
     test_program("first_collision.cl")
         .kernel("draw_collisions")
-        .launch(n, on_device(std::vector<Flux16>{sigma_t}), on_device(std::vector<Flux16>{uptake}), on_device(u), n, way,
-                weights, branch);
+        .launch(n, on_device(std::vector<Flux16>{sigma_t}), on_device(std::vector<Flux16>{uptake}), on_device(u), n,
+                way, weights, branch);
     return {way.download(), weights.download(), branch.download()};
 }
 
@@ -45,7 +45,8 @@ std::vector<Float2> random_pairs(std::size_t n, unsigned seed) {
 // From 0.05 to 40 per mm, in no order.
 Flux16 mixed_sigma() {
     Flux16 sigma;
-    for (std::size_t k = 0; k < 16; ++k) sigma.v[k] = static_cast<float>(0.05 * std::pow(800.0, double((k * 7) % 16) / 15.0));
+    for (std::size_t k = 0; k < 16; ++k)
+        sigma.v[k] = static_cast<float>(0.05 * std::pow(800.0, double((k * 7) % 16) / 15.0));
     return sigma;
 }
 

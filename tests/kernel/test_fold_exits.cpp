@@ -45,9 +45,7 @@ std::vector<ExitPoint> fold(const Traced& scene, const Missed& missed) {
     return exits.download();
 }
 
-glm::dvec3 position_of(const ExitPoint& e) {
-    return {e.x, e.y, e.z};
-}
+glm::dvec3 position_of(const ExitPoint& e) { return {e.x, e.y, e.z}; }
 
 // 20 x 4 x 20 mm, its top at y = 4.
 constexpr float half_mm = 10.0f, height_mm = 4.0f;

@@ -102,7 +102,7 @@ void check_directions(int count) {
         const glm::vec3 n(random_unit(generator));
         glm::vec3 d(random_unit(generator));
         if (glm::dot(d, n) > 0.0f) d = -d;
-        if (i % 7 == 0) d = -n;                                                   // head on
+        if (i % 7 == 0) d = -n;                                                // head on
         if (i % 7 == 1) d = glm::normalize(d - (glm::dot(d, n) + 1e-4f) * n);  // grazing
         directions.push_back({d.x, d.y, d.z, indices[i % 5]});
         normals.push_back({n.x, n.y, n.z, 0.0f});
@@ -185,14 +185,11 @@ TEST_CASE("reflectance is reciprocal", "[fresnel]") {
     }
     const std::vector<Reflectances> above = found_at(outside, eta), below = found_at(within, eta);
     // Below, the cosine outside comes of a difference: of 2e-7 eta^2 in its square, here at most 6e-5 in itself.
-    for (std::size_t i = 0; i < eta.size(); ++i)
-        REQUIRE(above[i].outside == Approx(below[i].within).margin(4e-4));
+    for (std::size_t i = 0; i < eta.size(); ++i) REQUIRE(above[i].outside == Approx(below[i].within).margin(4e-4));
 }
 
 TEST_CASE("refracted and mirrored directions obey Snell's law and stay in the plane of incidence", "[fresnel]") {
     check_directions(5000);
 }
 
-TEST_CASE("a few refracted and mirrored directions", "[fresnel][tiny]") {
-    check_directions(35);
-}
+TEST_CASE("a few refracted and mirrored directions", "[fresnel][tiny]") { check_directions(35); }

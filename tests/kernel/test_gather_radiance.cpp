@@ -33,15 +33,9 @@ struct Seen {
     std::uint32_t body = 0;
 };
 
-float spectrum(int k) {
-    return 1.0f + 0.125f * static_cast<float>(k);
-}
-float reflectance(std::uint32_t material, int k) {
-    return material == grey ? 0.02f * static_cast<float>(k + 1) : 1.0f;
-}
-float emitted(int k) {
-    return 3.0f + static_cast<float>(k);
-}
+float spectrum(int k) { return 1.0f + 0.125f * static_cast<float>(k); }
+float reflectance(std::uint32_t material, int k) { return material == grey ? 0.02f * static_cast<float>(k + 1) : 1.0f; }
+float emitted(int k) { return 3.0f + static_cast<float>(k); }
 
 PassConstants pass_constants() {
     PassConstants pass{};
@@ -90,9 +84,7 @@ class Bench {
     // By component, then point.
     std::vector<FilmValue> film() const { return film_.download(); }
     std::vector<GatherPoint> points() const { return gather_.points().download(); }
-    double x(std::uint32_t component, std::uint32_t point) const {
-        return film()[component * count_ + point].x;
-    }
+    double x(std::uint32_t component, std::uint32_t point) const { return film()[component * count_ + point].x; }
 
   private:
     CameraRecord camera() const {
@@ -134,9 +126,8 @@ class Bench {
             lights[0].v[k] = emitted(k);
         }
         const Device& device = test_device();
-        scene_ = {{device, "triangles", triangles}, {device, "shapes", shapes},
-                  {device, "materials", materials}, {device, "spectra", spectra},
-                  {device, "emitted", lights},      no_textures(materials.size())};
+        scene_ = {{device, "triangles", triangles}, {device, "shapes", shapes},  {device, "materials", materials},
+                  {device, "spectra", spectra},     {device, "emitted", lights}, no_textures(materials.size())};
         rays_ = {device, "rays", rays};
         hits_ = {device, "hits", hits};
     }
@@ -198,8 +189,7 @@ Expected expected_light(const Seen& seen, const std::vector<Photon>& photons, do
     }
     const PassConstants pass = pass_constants();
     for (int k = 0; k < 16; ++k) {
-        const double radiance =
-            sum * spectrum(k) * reflectance(seen.material, k) / (pi * pi * radius * radius);
+        const double radiance = sum * spectrum(k) * reflectance(seen.material, k) / (pi * pi * radius * radius);
         result.x += radiance * pass.to_x[k];
         result.y += radiance * pass.to_y[k];
         result.z += radiance * pass.to_z[k];
@@ -208,9 +198,7 @@ Expected expected_light(const Seen& seen, const std::vector<Photon>& photons, do
 }
 
 // Rounded to single precision, as photons and points are stored.
-glm::dvec3 stored(const glm::dvec3& p) {
-    return glm::dvec3(glm::vec3(p));
-}
+glm::dvec3 stored(const glm::dvec3& p) { return glm::dvec3(glm::vec3(p)); }
 
 // Photons and points on a sphere and on a plane through it, with normals off the surface's.
 void random_surface(std::uint32_t photon_count, std::uint32_t point_count, std::vector<Photon>& photons,
@@ -219,8 +207,8 @@ void random_surface(std::uint32_t photon_count, std::uint32_t point_count, std::
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     const auto place = [&](bool sphere, glm::dvec3& position, glm::dvec3& normal) {
         normal = sphere ? random_direction(generator) : glm::dvec3(0.0, 0.0, 1.0);
-        position = stored(sphere ? 4.0 * normal
-                                 : glm::dvec3(10.0 * uniform(generator), 10.0 * uniform(generator), 0.0));
+        position =
+            stored(sphere ? 4.0 * normal : glm::dvec3(10.0 * uniform(generator), 10.0 * uniform(generator), 0.0));
     };
     for (std::uint32_t i = 0; i < photon_count; ++i) {
         Photon photon;
@@ -304,7 +292,8 @@ TEST_CASE("points with radii of all classes each agree with the search", "[gathe
 
 TEST_CASE("reflections and other materials keep the radius of the pass", "[gather][tiny]") {
     const glm::dvec3 up(0.0, 0.0, 1.0);
-    const std::vector<Seen> seen = {{{0.0, 0.0, -1.0}, up, white}, {{0.5, 0.0, -1.0}, up, white}, {{0.0, 0.0, -1.0}, up, grey}};
+    const std::vector<Seen> seen = {
+        {{0.0, 0.0, -1.0}, up, white}, {{0.5, 0.0, -1.0}, up, white}, {{0.0, 0.0, -1.0}, up, grey}};
     Bench bench(seen, {}, 1.0f);
     std::vector<Seen> at_set_up = seen;
     at_set_up[2].material = white;
@@ -386,8 +375,7 @@ TEST_CASE("light does not come through a wall, round an edge or from a step", "[
     dark.run();
     for (const FilmValue& value : dark.film()) CHECK(value.x == 0.0f);
 
-    Bench lit(seen, {{{0.1, 0.0, 0.24}, up}, {{0.5, 0.5, 0.0}, glm::normalize(glm::dvec3(1.5, 0.0, 1.0))}},
-              1.0f);
+    Bench lit(seen, {{{0.1, 0.0, 0.24}, up}, {{0.5, 0.5, 0.0}, glm::normalize(glm::dvec3(1.5, 0.0, 1.0))}}, 1.0f);
     lit.run();
     double expected = 0.0;
     for (int k = 0; k < 16; ++k) expected += 2.0 * spectrum(k) / (pi * pi);
@@ -478,7 +466,8 @@ TEST_CASE("smooth surfaces have the weight of their exit, and emit as much as ot
 // The bench's camera stands at the origin.
 TEST_CASE("a point is seen directly where its ray starts at the camera", "[gather][tiny]") {
     const glm::dvec3 up(0.0, 0.0, 1.0);
-    Bench bench({{{0.0, 0.0, -1.0}, up, white}, {{0.0, 1e-3, -1.0}, up, white}, {{0.0, 0.0, 0.0}, up, white}}, {}, 1.0f);
+    Bench bench({{{0.0, 0.0, -1.0}, up, white}, {{0.0, 1e-3, -1.0}, up, white}, {{0.0, 0.0, 0.0}, up, white}}, {},
+                1.0f);
     bench.collect();
     const std::vector<GatherPoint> points = bench.points();
     CHECK(points[0].reflected == 0u);

@@ -32,8 +32,7 @@ Slots random_slots(std::uint32_t count, glm::vec3 low, glm::vec3 high) {
     slots.low = low;
     slots.high = high;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::vec3 p =
-            low + (high - low) * glm::vec3(uniform(generator), uniform(generator), uniform(generator));
+        const glm::vec3 p = low + (high - low) * glm::vec3(uniform(generator), uniform(generator), uniform(generator));
         const std::uint32_t normal =
             uniform(generator) < 0.2f ? STOKES_EMPTY_SLOT : pack_normal_twin(random_direction(generator));
         slots.heads.push_back({p.x, p.y, p.z, normal});
@@ -73,8 +72,7 @@ Built build(const Slots& slots, float radius_mm, std::uint32_t capacity) {
     SpatialHash hash(test_device(), "test", capacity);
     const Buffer<PhotonHead> heads(test_device(), "heads", slots.heads);
     const Buffer<Flux16> flux(test_device(), "flux", slots.flux);
-    builder.build(hash, heads, flux, static_cast<std::uint32_t>(slots.heads.size()), slots.low, slots.high,
-                  radius_mm);
+    builder.build(hash, heads, flux, static_cast<std::uint32_t>(slots.heads.size()), slots.low, slots.high, radius_mm);
     const std::uint32_t n = hash.count_photons();
     return {hash.grid(),
             hash.cell_starts().download(hash.grid().keys + 1),
@@ -184,16 +182,12 @@ void check_runs(glm::vec3 low, glm::vec3 high, float radius, std::uint32_t slots
     std::uniform_real_distribution<float> uniform(-0.1f, 1.1f);
     std::vector<Float4> queries;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::vec3 q =
-            low + (high - low) * glm::vec3(uniform(generator), uniform(generator), uniform(generator));
+        const glm::vec3 q = low + (high - low) * glm::vec3(uniform(generator), uniform(generator), uniform(generator));
         queries.push_back({q.x, q.y, q.z, 0.0f});
     }
     const Buffer<Float4> input(test_device(), "queries", queries);
-    const Buffer<Uint4> begin_buffer(test_device(), "begins", count),
-        end_buffer(test_device(), "ends", count);
-    test_program("hash_runs.cl")
-        .kernel("find_runs")
-        .launch(count, input, count, grid, begin_buffer, end_buffer);
+    const Buffer<Uint4> begin_buffer(test_device(), "begins", count), end_buffer(test_device(), "ends", count);
+    test_program("hash_runs.cl").kernel("find_runs").launch(count, input, count, grid, begin_buffer, end_buffer);
     const std::vector<Uint4> begins = begin_buffer.download(), ends = end_buffer.download();
     for (std::uint32_t i = 0; i < count; ++i) {
         for (int run = 0; run < 4; ++run) {
@@ -204,8 +198,7 @@ void check_runs(glm::vec3 low, glm::vec3 high, float radius, std::uint32_t slots
         for (int k = 0; k < 32; ++k) {
             glm::dvec3 offset = random_direction(generator) * static_cast<double>(radius);
             if (k < 6)
-                offset = glm::dvec3(k / 2 == 0, k / 2 == 1, k / 2 == 2) * (k % 2 == 0 ? 1.0 : -1.0) *
-                         double(radius);
+                offset = glm::dvec3(k / 2 == 0, k / 2 == 1, k / 2 == 2) * (k % 2 == 0 ? 1.0 : -1.0) * double(radius);
             const float x = static_cast<float>(queries[i].x + offset.x),
                         y = static_cast<float>(queries[i].y + offset.y),
                         z = static_cast<float>(queries[i].z + offset.z);
@@ -230,8 +223,8 @@ TEST_CASE("the ball about a query is covered once, whatever the table", "[hash][
 
 TEST_CASE("the ball about a query is covered once, in large and distant scenes", "[hash]") {
     check_runs({0, 0, 0}, {1000, 1000, 1000}, 0.05f, 1u << 20,
-               2000);  // coordinates rounded to 1e-3 of a cell
+               2000);                                                        // coordinates rounded to 1e-3 of a cell
     check_runs({-3e5f, 2e5f, 1e5f}, {-2e5f, 3e5f, 2e5f}, 1.0f, 1000, 2000);  // far from the origin
-    check_runs({0, 0, 0}, {1e6f, 1e6f, 1e6f}, 0.1f, 1u << 22, 2000);  // more cells than the grid may have
-    check_runs({0, 0, 0}, {0, 0, 0}, 0.1f, 100, 10);                  // a single point
+    check_runs({0, 0, 0}, {1e6f, 1e6f, 1e6f}, 0.1f, 1u << 22, 2000);         // more cells than the grid may have
+    check_runs({0, 0, 0}, {0, 0, 0}, 0.1f, 100, 10);                         // a single point
 }

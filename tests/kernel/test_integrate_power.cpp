@@ -27,10 +27,9 @@ double power_twin(std::uint32_t component, double sigma_s, double sigma_a, doubl
     return multiple_power(sigma_a, sigma_t, dipole_a, r_mm);
 }
 
-double power_twin(std::uint32_t component, const PassMedium& medium, std::size_t k, double r_mm,
-                  double theta_deg) {
-    return power_twin(component, double(medium.sigma_s[k]), double(medium.sigma_a[k]),
-                      double(medium.dipole_a), r_mm, theta_deg);
+double power_twin(std::uint32_t component, const PassMedium& medium, std::size_t k, double r_mm, double theta_deg) {
+    return power_twin(component, double(medium.sigma_s[k]), double(medium.sigma_a[k]), double(medium.dipole_a), r_mm,
+                      theta_deg);
 }
 
 constexpr std::uint32_t before = 3, after = 4;  // entries about those that are written
@@ -50,8 +49,7 @@ std::vector<Flux16> integrated(const std::vector<ExitPoint>& exits, const std::v
         on_device(std::vector<Flux16>(before + exits.size() + after, constant_flux(unwritten)));
     Program(test_device(), "integrate_power.cl")
         .kernel("integrate_power")
-        .launch(exits.size(), round, on_device(all), on_device(translucent_materials()), on_device(media),
-                power);
+        .launch(exits.size(), round, on_device(all), on_device(translucent_materials()), on_device(media), power);
     std::vector<Flux16> result = power.download();
     for (std::size_t i = 0; i < result.size(); ++i)
         if (i < before || i >= before + exits.size()) CHECK(result[i].v[0] == unwritten);
@@ -97,8 +95,8 @@ std::vector<ExitPoint> random_exits(std::size_t count) {
             for (const std::uint32_t material : {0u, 1u}) exits.push_back(exit_of(material, r, theta));
     while (exits.size() < count) {
         const double r = 9.9 * std::pow(uniform(generator), 2.0);
-        exits.push_back(exit_of(std::uint32_t(exits.size() % 3), exits.size() % 4 == 0 ? -r : r,
-                                89.1 * uniform(generator)));
+        exits.push_back(
+            exit_of(std::uint32_t(exits.size() % 3), exits.size() % 4 == 0 ? -r : r, 89.1 * uniform(generator)));
     }
     return exits;
 }
@@ -126,8 +124,7 @@ void check_powers(std::size_t count) {
                 const double at_entry = power_twin(component, media[medium], k, 0.0, theta);
                 const double difference = std::abs(double(found[i].v[k]) - expected);
                 if (expected == 0.0 && difference == 0.0) continue;
-                const double error =
-                    expected < 1e-12 * at_entry ? difference / at_entry : difference / expected;
+                const double error = expected < 1e-12 * at_entry ? difference / at_entry : difference / expected;
                 if (error <= worst) continue;
                 worst = error;
                 where = "r " + std::to_string(r) + " mm, " + std::to_string(theta) + " degrees, medium " +
@@ -147,8 +144,8 @@ struct Drawn {
     std::vector<Probe> probes;
 };
 
-Drawn draw(const MediumMixture& mixture, float eta, std::uint32_t component, double theta_in_deg,
-           std::uint32_t count, std::uint32_t seed) {
+Drawn draw(const MediumMixture& mixture, float eta, std::uint32_t component, double theta_in_deg, std::uint32_t count,
+           std::uint32_t seed) {
     const double angle = theta_in_deg * M_PI / 180.0;
     const Ray ray{0, 0, 0, 0, float(std::sin(angle)), float(-std::cos(angle)), 0, 1e30f};
     const SurfacePoint point{1.0f, 2.0f, 3.0f, 0, 0.0f, 1.0f, 0.0f, 5};
@@ -173,8 +170,8 @@ Drawn draw(const MediumMixture& mixture, float eta, std::uint32_t component, dou
         .launch(count, round, pass_on_device(seed, 0, 0.01f), on_device(list),
                 on_device(std::vector<SurfacePoint>(count, point)), on_device(std::vector<Ray>(count, ray)),
                 on_device(std::vector<MaterialRecord>{material}),
-                on_device(std::vector<DistanceMixture>{DistanceMixture{}, mixture.record}), on_device(rows),
-                exits, probes);
+                on_device(std::vector<DistanceMixture>{DistanceMixture{}, mixture.record}), on_device(rows), exits,
+                probes);
     Drawn drawn;
     drawn.exits = exits.download(count, before);
     drawn.probes = probes.download(count, before);
@@ -251,8 +248,7 @@ TEST_CASE("integrated powers agree with quadrature in double precision", "[integ
     check_powers(40);
 }
 
-TEST_CASE("integrated powers agree with quadrature at many distances, angles and wavelengths",
-          "[integrate_power]") {
+TEST_CASE("integrated powers agree with quadrature at many distances, angles and wavelengths", "[integrate_power]") {
     check_powers(6000);
 }
 
@@ -306,8 +302,7 @@ TEST_CASE("distances have the mean over wavelengths of the power as density", "[
 
 // The angle in the medium is that of refraction: eta 1.5, incidence at 80 degrees.
 TEST_CASE("exits lie on the tangent plane at their distance, in all directions", "[integrate_power][tiny]") {
-    const Drawn drawn =
-        draw(make_medium_mixture(cases().front().medium), 1.5f, STOKES_MAP_FLUORESCENCE, 80.0, 200, 3);
+    const Drawn drawn = draw(make_medium_mixture(cases().front().medium), 1.5f, STOKES_MAP_FLUORESCENCE, 80.0, 200, 3);
     const double refracted_deg = std::asin(std::sin(80.0 * M_PI / 180.0) / 1.5) * 180.0 / M_PI;
     std::vector<double> quarters(4, 0.0);
     for (std::size_t i = 0; i < drawn.exits.size(); ++i) {
@@ -330,16 +325,14 @@ TEST_CASE("without scattering the distances of its component are uniform", "[int
     const MediumSpectra ink{"ink", Spectrum::constant(0.0), Spectrum::constant(1.0)};
     const Drawn drawn = draw(make_medium_mixture(ink), 1.0f, STOKES_MAP_SINGLE, 30.0, 1u << 14, 4);
     std::vector<double> counts(32, 0.0);
-    for (const float r : drawn.r_mm)
-        counts[std::min(std::size_t(double(r) / 9.9 * 32.0), std::size_t{31})] += 1.0;
+    for (const float r : drawn.r_mm) counts[std::min(std::size_t(double(r) / 9.9 * 32.0), std::size_t{31})] += 1.0;
     CHECK(chi_square_uniform(counts) > 1e-4);
 }
 
 TEST_CASE("distances are finite in the thinnest and densest media", "[integrate_power][tiny]") {
     for (const double sigma : {1e-9, 1e9})
         for (const std::uint32_t component : components) {
-            const MediumSpectra medium{"extreme", Spectrum::constant(0.5 * sigma),
-                                       Spectrum::constant(0.5 * sigma)};
+            const MediumSpectra medium{"extreme", Spectrum::constant(0.5 * sigma), Spectrum::constant(0.5 * sigma)};
             for (const float r : draw(make_medium_mixture(medium), 1.0f, component, 60.0, 64, 5).r_mm)
                 CHECK((r >= 0.0f && r <= 9.9f));
         }

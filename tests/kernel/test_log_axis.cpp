@@ -45,9 +45,7 @@ struct LogTable {
             double integral = 0.0;
             for (std::size_t i = 0; i < r.size(); ++i) {
                 mean.push_back(static_cast<float>(r[i] * std::exp(-r[i] / (0.3 + depth)) + 0.002));
-                if (i > 0)
-                    integral +=
-                        0.5 * (double(mean.back()) + double(mean[mean.size() - 2])) * (r[i] - r[i - 1]);
+                if (i > 0) integral += 0.5 * (double(mean.back()) + double(mean[mean.size() - 2])) * (r[i] - r[i - 1]);
                 cumulative.push_back(static_cast<float>(integral));
             }
         }
@@ -66,8 +64,7 @@ struct LogTable {
 
 std::vector<float> draw(const LogTable& table, float row, const std::vector<float>& u) {
     Device& device = test_device();
-    const Buffer<float> mean(device, "mean rows", table.mean),
-        cumulative(device, "cumulative rows", table.cumulative);
+    const Buffer<float> mean(device, "mean rows", table.mean), cumulative(device, "cumulative rows", table.cumulative);
     const Buffer<float> rows(device, "rows", std::vector<float>(u.size(), row)), uniforms(device, "u", u);
     const Buffer<float> distances(device, "distances", u.size());
     test_program("power_table.cl")
@@ -135,10 +132,9 @@ TEST_CASE("look-ups on logarithmic axes are bilinear in the values", "[log_axis]
     for (std::size_t k = 0; k < rows.size(); ++k) {
         CAPTURE(k);
         const std::vector<double> f = table.density(rows[k]);
-        const auto above =
-            std::upper_bound(table.r.begin() + 1, table.r.end() - 1, double(r_mm[k])) - table.r.begin();
-        const double x = std::clamp(
-            (double(r_mm[k]) - table.r[above - 1]) / (table.r[above] - table.r[above - 1]), 0.0, 1.0);
+        const auto above = std::upper_bound(table.r.begin() + 1, table.r.end() - 1, double(r_mm[k])) - table.r.begin();
+        const double x =
+            std::clamp((double(r_mm[k]) - table.r[above - 1]) / (table.r[above] - table.r[above - 1]), 0.0, 1.0);
         const double expected = (1.0 - x) * f[above - 1] + x * f[above];
         for (int j = 0; j < 16; ++j) CHECK(double(found[k].v[j]) == Approx(expected * (j + 1)).epsilon(2e-5));
     }

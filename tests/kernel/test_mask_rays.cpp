@@ -19,8 +19,7 @@ Picture noise(double dark) {
     std::mt19937 random(21);
     std::uniform_real_distribution<double> uniform;
     Picture picture{columns, rows, {}, {}};
-    for (int i = 0; i < columns * rows; ++i)
-        picture.luminance.push_back(uniform(random) < dark ? 0.0f : 1.0f);
+    for (int i = 0; i < columns * rows; ++i) picture.luminance.push_back(uniform(random) < dark ? 0.0f : 1.0f);
     return picture;
 }
 
@@ -51,8 +50,7 @@ Aim aim_at(const Picture& picture, int count) {
             for (const double dz : {-1e-3, 1e-3}) {
                 const double i = std::floor(x + dx), j = std::floor(z + dz);
                 const bool outside = i < 0 || j < 0 || i >= columns || j >= rows;
-                const bool is_bright =
-                    outside || picture.luminance[static_cast<std::size_t>(j * columns + i)] > 0.5f;
+                const bool is_bright = outside || picture.luminance[static_cast<std::size_t>(j * columns + i)] > 0.5f;
                 ++(is_bright ? bright : dark);
             }
         if (dark != 0 && bright != 0) continue;

@@ -14,8 +14,7 @@ namespace {
 std::vector<Triangle> triangles_of(const Mesh& mesh) {
     std::vector<Triangle> triangles;
     for (const glm::uvec3& t : mesh.triangles)
-        triangles.push_back(
-            make_triangle(mesh.positions_mm[t.x], mesh.positions_mm[t.y], mesh.positions_mm[t.z]));
+        triangles.push_back(make_triangle(mesh.positions_mm[t.x], mesh.positions_mm[t.y], mesh.positions_mm[t.z]));
     return triangles;
 }
 
@@ -31,7 +30,7 @@ GatherPoint point_at(double x, double y, double z) {
     return point;
 }
 
-// Which pass it is, and whether it has even_pixels.
+// Which pass it is, and whether it has low_discrepancy_pixels.
 struct PassKind {
     std::uint32_t index = 2;
     bool even = false;
@@ -53,7 +52,7 @@ std::vector<double> weights_by_pixel(const Mesh& mesh, GatherPoint point, std::u
     const Buffer<PassConstants> pass = pass_on_device(5);
     PassConstants constants = pass.download().front();
     constants.pass = kind.index;
-    constants.even_pixels = kind.even ? 1 : 0;
+    constants.low_discrepancy_pixels = kind.even ? 1 : 0;
     pass.upload(&constants, 1);
     Program(test_device(), "measure_disks.cl")
         .kernel("measure_disks")
@@ -82,9 +81,9 @@ TEST_CASE("the whole disk on the surface weighs one", "[measure_disks][tiny]") {
     CHECK(sample.variance() == 0.0);
 }
 
-// The mean of the weight is the reciprocal of the share of the disk on the surface; 14 comparisons at 4 standard errors. The
-// variance is that of a geometric distribution, (1 - p)/p^2; with even pixels (1 - p)/p for the first place, and a quarter
-// of the geometric one's, 1 - p times, for the rest.
+// The mean of the weight is the reciprocal of the share of the disk on the surface; 14 comparisons at 4 standard
+// errors. The variance is that of a geometric distribution, (1 - p)/p^2; with even pixels (1 - p)/p for the first
+// place, and a quarter of the geometric one's, 1 - p times, for the rest.
 TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, in the mean", "[measure_disks]") {
     const Mesh plate = make_rectangle(20.0, 20.0), post = make_prism(6, 10.0, 8.0);
     const double apothem = 10.0 * std::sqrt(0.75);
@@ -93,14 +92,15 @@ TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, i
         GatherPoint point;
         double share;
     };
-    for (const Case& c : {Case{plate, point_at(9.5, 0.0, 0.0), share_inside(0.5)},
-                          Case{plate, point_at(0.0, 0.0, -9.9), share_inside(0.1)},
-                          Case{plate, point_at(-9.2, 0.0, 3.0), share_inside(0.8)},
-                          Case{plate, point_at(9.9999, 0.0, 9.9999), 0.25},
-                          Case{post, point_at(0.0, 8.0, apothem - 0.3), share_inside(0.3)},
-                          Case{post, point_at(0.0, 8.0, -apothem + 0.6), share_inside(0.6)},
-                          Case{post, point_at(0.0, 8.0, 0.0), 1.0}}) {
-        const Sample sample = weights(c.mesh, c.point, 40000, 1.0f), even = weights(c.mesh, c.point, 40000, 1.0f, 0, {2, true});
+    for (const Case& c :
+         {Case{plate, point_at(9.5, 0.0, 0.0), share_inside(0.5)},
+          Case{plate, point_at(0.0, 0.0, -9.9), share_inside(0.1)},
+          Case{plate, point_at(-9.2, 0.0, 3.0), share_inside(0.8)}, Case{plate, point_at(9.9999, 0.0, 9.9999), 0.25},
+          Case{post, point_at(0.0, 8.0, apothem - 0.3), share_inside(0.3)},
+          Case{post, point_at(0.0, 8.0, -apothem + 0.6), share_inside(0.6)},
+          Case{post, point_at(0.0, 8.0, 0.0), 1.0}}) {
+        const Sample sample = weights(c.mesh, c.point, 40000, 1.0f),
+                     even = weights(c.mesh, c.point, 40000, 1.0f, 0, {2, true});
         CAPTURE(c.point.x, c.point.y, c.point.z, sample.mean(), even.mean(), 1.0 / c.share);
         CHECK(std::abs(sample.z(1.0 / c.share)) < 4.0);
         CHECK(std::abs(even.z(1.0 / c.share)) < 4.0);
@@ -110,7 +110,8 @@ TEST_CASE("near an edge the weight is the reciprocal of the share of the disk, i
     }
 }
 
-// Where a series often ends before it finds the surface, as on a strip of a twentieth of the disk, both ways still agree.
+// Where a series often ends before it finds the surface, as on a strip of a twentieth of the disk, both ways still
+// agree.
 TEST_CASE("on a thin strip even trials have the mean of random ones", "[measure_disks]") {
     const Mesh strip = make_rectangle(20.0, 0.08);
     const Sample random = weights(strip, point_at(0.0, 0.0, 0.0), 20000, 1.0f),
@@ -120,14 +121,15 @@ TEST_CASE("on a thin strip even trials have the mean of random ones", "[measure_
     CHECK(std::abs(even.mean() - random.mean()) < 4.0 * std::hypot(even.standard_error(), random.standard_error()));
 }
 
-// Of 16 passes the first places are even, so that about as many fail at every pixel: of independent ones the sums' variance
-// would be 16 times that of one.
+// Of 16 passes the first places are even, so that about as many fail at every pixel: of independent ones the sums'
+// variance would be 16 times that of one.
 TEST_CASE("over passes disks are measured evenly", "[measure_disks]") {
     const Mesh plate = make_rectangle(20.0, 20.0);
     std::vector<double> sums(4000, 0.0);
     Sample one, all;
     for (std::uint32_t pass = 0; pass < 16; ++pass) {
-        const std::vector<double> weights = weights_by_pixel(plate, point_at(9.5, 0.0, 0.0), 4000, 1.0f, 0, {pass, true});
+        const std::vector<double> weights =
+            weights_by_pixel(plate, point_at(9.5, 0.0, 0.0), 4000, 1.0f, 0, {pass, true});
         for (std::size_t i = 0; i < sums.size(); ++i) {
             one.add(weights[i]);
             sums[i] += weights[i];

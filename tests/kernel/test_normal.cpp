@@ -86,7 +86,6 @@ TEST_CASE("a packed normal is of its own body, modulo 256", "[normal][tiny]") {
     const std::vector<std::uint32_t> packed = pack(directions(4096));
     for (const std::uint32_t body : {0u, 1u, 127u, 128u, 255u, 256u, 700u}) {
         const std::vector<Float4> found = components(packed, body);
-        for (std::size_t i = 0; i < packed.size(); ++i)
-            REQUIRE(found[i].w == (i % 256 == body % 256 ? -1.0f : 0.0f));
+        for (std::size_t i = 0; i < packed.size(); ++i) REQUIRE(found[i].w == (i % 256 == body % 256 ? -1.0f : 0.0f));
     }
 }

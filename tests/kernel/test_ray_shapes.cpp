@@ -80,13 +80,13 @@ TEST_CASE("packets find what single rays find: cameras outside, within, grazing 
     triangles.push_back(make_triangle({-100, 0, -100}, {-100, 0, 100}, {100, 0, 100}));
     triangles.push_back(make_triangle({-100, 0, -100}, {100, 0, 100}, {100, 0, -100}));
     std::vector<std::vector<Ray>> views{
-        camera_rays({50, 60, 180}, {50, 50, 50}, 0.5f, 64),   // straight along an axis: signs change within packets
+        camera_rays({50, 60, 180}, {50, 50, 50}, 0.5f, 64),  // straight along an axis: signs change within packets
         camera_rays({160, 130, -70}, {50, 50, 50}, 0.6f, 64),
-        camera_rays({50, 50, 50}, {20, 90, 60}, 1.3f, 64),    // all round, axes change within packets
+        camera_rays({50, 50, 50}, {20, 90, 60}, 1.3f, 64),        // all round, axes change within packets
         camera_rays({-90, 0.01f, 3}, {90, 0.01f, 2}, 0.02f, 64),  // along the floor
         camera_rays({5e5f, 4e5f, 6e5f}, {50, 50, 50}, 1e-4f, 64),
-        camera_rays({50, 60, 180}, {50, 400, 50}, 0.2f, 64)};     // past everything
-    views.push_back(random_rays(1000, -10.0f, 110.0f, 42));       // nothing in common
+        camera_rays({50, 60, 180}, {50, 400, 50}, 0.2f, 64)};               // past everything
+    views.push_back(random_rays(1000, -10.0f, 110.0f, 42));                 // nothing in common
     views.push_back(camera_rays({160, 130, -70}, {50, 50, 50}, 0.3f, 21));  // 441 rays: the last packet is not full
     std::vector<Ray> segments = camera_rays({160, 130, -70}, {50, 50, 50}, 0.5f, 32);
     for (std::size_t i = 0; i < segments.size(); ++i) {

@@ -19,8 +19,7 @@ PassConstants stratified_pass(const Strata& strata) {
     PassConstants pass{};
     pass.stratified = 1;
     std::copy(strata.begin(), strata.end(), pass.strata);
-    for (std::size_t l = 0; l < level_shares.size(); ++l)
-        pass.level_shares[l] = static_cast<float>(level_shares[l]);
+    for (std::size_t l = 0; l < level_shares.size(); ++l) pass.level_shares[l] = static_cast<float>(level_shares[l]);
     return pass;
 }
 
@@ -40,15 +39,15 @@ struct Light {
     std::vector<std::uint32_t> histories;
 };
 
-Light reradiated(const PassConstants& pass, const std::vector<Flux16>& rows, const Flux16& flux,
-                 cl_uint times, const std::vector<float>& u) {
+Light reradiated(const PassConstants& pass, const std::vector<Flux16>& rows, const Flux16& flux, cl_uint times,
+                 const std::vector<float>& u) {
     const auto n = static_cast<cl_uint>(u.size() / times);
     const Buffer<Flux16> out(test_device(), "out", n);
     const Buffer<cl_uint> histories(test_device(), "histories", n);
     test_program("reradiation.cl")
         .kernel("reradiate_often")
-        .launch(n, on_device(std::vector<PassConstants>{pass}), on_device(rows),
-                on_device(std::vector<Flux16>{flux}), on_device(u), times, n, out, histories);
+        .launch(n, on_device(std::vector<PassConstants>{pass}), on_device(rows), on_device(std::vector<Flux16>{flux}),
+                on_device(u), times, n, out, histories);
     return {out.download(), histories.download()};
 }
 

@@ -29,8 +29,7 @@ const GreenTable& smooth_table() {
     return table;
 }
 
-const GreenResampler::Sixteen kSigma{0.5, 0.6, 0.7,  0.8, 0.9, 1.0, 1.1, 1.2,
-                                     1.3, 1.4, 1.45, 1.5, 1.6, 1.8, 1.9, 2.0};
+const GreenResampler::Sixteen kSigma{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.45, 1.5, 1.6, 1.8, 1.9, 2.0};
 const GreenResampler::Sixteen kAlbedo{0.0,  0.05, 0.3,  0.5,   0.7,   0.8,   0.9,    0.95,
                                       0.97, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9998, 1.0};
 
@@ -48,10 +47,9 @@ struct Resampled {
         Device& device = test_device();
         shape = green_medium_shape(smooth_table(), 0.5, 2.0, offset);
         const std::size_t entries = offset + std::size_t{shape.row_count} * shape.r_count;
-        const GreenPassTables pass{Buffer<Flux16>(device, "table", entries),
-                                   Buffer<Flux16>(device, "u1", first_row + shape.row_count),
-                                   Buffer<float>(device, "mean", entries),
-                                   Buffer<float>(device, "cumulative", entries)};
+        const GreenPassTables pass{
+            Buffer<Flux16>(device, "table", entries), Buffer<Flux16>(device, "u1", first_row + shape.row_count),
+            Buffer<float>(device, "mean", entries), Buffer<float>(device, "cumulative", entries)};
         pass.table16.upload(std::vector<Flux16>(entries));
         pass.u1.upload(std::vector<Flux16>(pass.u1.size()));
         pass.mean_rows.upload(std::vector<float>(entries, -7.0f));
@@ -76,10 +74,8 @@ TEST_CASE("the medium's axes cover the universal table at every wavelength", "[r
     CHECK(shape.log_axes == (STOKES_LOG_ROWS | STOKES_LOG_R));
     CHECK(double(shape.r_first) == Approx(table.rho[1] / 2.0));
     CHECK(double(shape.row_first) == Approx(table.z[1] / 2.0));
-    CHECK(node(shape.r_first, shape.r_step, shape.r_count - 1) ==
-          Approx(table.rho.back() / 0.5).epsilon(1e-5));
-    CHECK(node(shape.row_first, shape.row_step, shape.row_count - 1) ==
-          Approx(table.z.back() / 0.5).epsilon(1e-5));
+    CHECK(node(shape.r_first, shape.r_step, shape.r_count - 1) == Approx(table.rho.back() / 0.5).epsilon(1e-5));
+    CHECK(node(shape.row_first, shape.row_step, shape.row_count - 1) == Approx(table.z.back() / 0.5).epsilon(1e-5));
     CHECK(input_error([&] { green_medium_shape(table, 0.0, 2.0); }) ==
           "extinction coefficients from 0 to 2 per mm: expected positive numbers");
 }
@@ -94,9 +90,9 @@ TEST_CASE("the resampled rows hold the exact totals", "[resample_green]") {
         for (std::size_t j = 0; j < 16; ++j) {
             double sum = 0.0;
             for (std::size_t i = 0; i + 1 < pass.shape.r_count; ++i)
-                sum += 0.5 * (pass.r(i + 1) - pass.r(i)) *
-                       (double(pass.values[pass.entry(row, i)].v[j]) +
-                        double(pass.values[pass.entry(row, i + 1)].v[j]));
+                sum +=
+                    0.5 * (pass.r(i + 1) - pass.r(i)) *
+                    (double(pass.values[pass.entry(row, i)].v[j]) + double(pass.values[pass.entry(row, i + 1)].v[j]));
             const double u1 = pass.u1[row].v[j], exact = totals.at(pass.z(row) * kSigma[j], kAlbedo[j]);
             worst_row = std::max(worst_row, std::abs(sum - u1));
             worst_total = std::max(worst_total, std::abs(u1 - exact) - 0.003 * exact);
@@ -129,8 +125,7 @@ TEST_CASE("resampled densities are the universal ones in millimetres", "[resampl
             for (std::size_t i = 1; i + 1 < 8 * pass.shape.r_count; ++i) {
                 const double low = node(0.003, pass.shape.r_step / 8.0, i),
                              high = node(0.003, pass.shape.r_step / 8.0, i + 1);
-                integral +=
-                    0.5 * (high - low) * (shape_of(low, z, kAlbedo[j]) + shape_of(high, z, kAlbedo[j]));
+                integral += 0.5 * (high - low) * (shape_of(low, z, kAlbedo[j]) + shape_of(high, z, kAlbedo[j]));
             }
             const double scale = totals.at(z, kAlbedo[j]) / integral * kSigma[j];
             double peak = 0.0, worst = 0.0;
@@ -159,8 +154,7 @@ TEST_CASE("the mixture is the mean of the wavelengths' densities", "[resample_gr
             if (i > 0) integral += 0.5 * (before + mean) * (pass.r(i) - pass.r(i - 1));
             before = mean;
             CHECK(double(pass.mean[pass.entry(row, i)]) == Approx(mean).epsilon(1e-5).margin(1e-12));
-            CHECK(double(pass.cumulative[pass.entry(row, i)]) ==
-                  Approx(integral).epsilon(1e-5).margin(1e-12));
+            CHECK(double(pass.cumulative[pass.entry(row, i)]) == Approx(integral).epsilon(1e-5).margin(1e-12));
         }
         double lit = 0.0;  // wavelengths of which anything leaves
         for (const float u1 : pass.u1[first_row + row].v) lit += u1 > 0.0f ? 1.0 : 0.0;

@@ -12,9 +12,7 @@ using namespace stokes;
 namespace {
 
 MediumSpectra marble() {
-    return {"marble",
-            {{464.0, 611.0}, {1.5, 1.1}, Outside::hold},
-            {{464.0, 611.0}, {0.007, 0.002}, Outside::hold}};
+    return {"marble", {{464.0, 611.0}, {1.5, 1.1}, Outside::hold}, {{464.0, 611.0}, {0.007, 0.002}, Outside::hold}};
 }
 
 TableGrid grid_of(std::size_t r, std::size_t theta, std::size_t lambda) {
@@ -39,7 +37,7 @@ Buffer<Flux16> resample(const std::vector<PowerTable>& tables, const std::vector
         const std::vector<float> layout = device_layout(table);
         full.insert(full.end(), layout.begin(), layout.end());
     }
-    const EvenAxis lambdas = device_wavelengths(tables.front());
+    const UniformAxis lambdas = device_wavelengths(tables.front());
     const std::size_t entries = full.size() / lambdas.count;
     Device& device = test_device();
     const Buffer<float> values(device, "power tables", full), wavelengths(device, "wavelengths", lambda_nm);
@@ -79,10 +77,8 @@ double looked_up(const PowerTable& table, double r_mm, double theta_deg, double 
     const TableShape shape = table_shape(table);
     const auto place = [](const TableAxis* axis, double x) {
         if (axis == nullptr) return 0.0;
-        const double step =
-            (axis->values.back() - axis->values.front()) / static_cast<double>(axis->values.size() - 1);
-        return std::clamp((x - axis->values.front()) / step, 0.0,
-                          static_cast<double>(axis->values.size() - 1));
+        const double step = (axis->values.back() - axis->values.front()) / static_cast<double>(axis->values.size() - 1);
+        return std::clamp((x - axis->values.front()) / step, 0.0, static_cast<double>(axis->values.size() - 1));
     };
     const double row = place(table.axis("theta"), theta_deg), r = place(table.axis("r"), r_mm);
     double sum = 0.0;
@@ -92,9 +88,8 @@ double looked_up(const PowerTable& table, double r_mm, double theta_deg, double 
         const double weight = (corner / 2 ? row - std::floor(row) : 1.0 - row + std::floor(row)) *
                               (corner % 2 ? r - std::floor(r) : 1.0 - r + std::floor(r));
         sum += weight *
-               at_wavelength(
-                   table, table_entry(table, shape, static_cast<std::size_t>(i), static_cast<std::size_t>(j)),
-                   lambda_nm);
+               at_wavelength(table, table_entry(table, shape, static_cast<std::size_t>(i), static_cast<std::size_t>(j)),
+                             lambda_nm);
     }
     return sum;
 }
@@ -106,8 +101,7 @@ TEST_CASE("resampled tables agree with interpolation in double precision", "[res
 }
 
 TEST_CASE("small tables, and tables of one wavelength, are resampled", "[resample_tables][tiny]") {
-    check_resampled(
-        {make_single_table(marble(), grid_of(3, 2, 5)), make_multiple_table(marble(), grid_of(4, 1, 5))});
+    check_resampled({make_single_table(marble(), grid_of(3, 2, 5)), make_multiple_table(marble(), grid_of(4, 1, 5))});
     check_resampled({make_single_table(marble(), grid_of(2, 1, 1))});
 }
 
@@ -129,16 +123,14 @@ TEST_CASE("a look-up is bilinear in distance and angle, held at the ends", "[res
     std::size_t offset = 0;
     for (const PowerTable& table : tables) {
         const TableShape shape = table_shape(table, offset);
-        look_up.launch(r_mm.size(), table16, shape, distances, angles, out,
-                       static_cast<std::uint32_t>(r_mm.size()));
+        look_up.launch(r_mm.size(), table16, shape, distances, angles, out, static_cast<std::uint32_t>(r_mm.size()));
         const std::vector<Flux16> found = out.download();
         double worst = 0.0;
         for (std::size_t i = 0; i < r_mm.size(); ++i)
             for (std::size_t k = 0; k < 16; ++k)
-                worst = std::max(worst,
-                                 std::abs(static_cast<double>(found[i].v[k]) /
-                                              looked_up(table, r_mm[i], theta_deg[i], some_wavelengths[k]) -
-                                          1.0));
+                worst = std::max(worst, std::abs(static_cast<double>(found[i].v[k]) /
+                                                     looked_up(table, r_mm[i], theta_deg[i], some_wavelengths[k]) -
+                                                 1.0));
         CAPTURE(table.component);
         CHECK(worst < 3e-6);
         offset += shape.row_count * shape.r_count;

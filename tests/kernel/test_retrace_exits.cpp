@@ -23,8 +23,20 @@ struct Events {
 ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, const Flux16& kept, const Flux16& event, bool found,
                   std::uint32_t material) {
     const glm::vec3 n(normal), p = 2.0f * n;
-    return {p.x,  p.y,  p.z,      found ? 1.5f : -1.5f, n.x,  n.y,           n.z,
-            0.5f, path, material, 0.7f,                 2.0f, light_of(kept), light_of(event)};
+    return {p.x,
+            p.y,
+            p.z,
+            found ? 1.5f : -1.5f,
+            n.x,
+            n.y,
+            n.z,
+            0.5f,
+            path,
+            material,
+            0.7f,
+            2.0f,
+            light_of(kept),
+            light_of(event)};
 }
 
 Flux16 times(const Flux16& flux, double factor) {
@@ -33,8 +45,8 @@ Flux16 times(const Flux16& flux, double factor) {
     return result;
 }
 
-Events events(std::uint32_t paths, double direct, double scattered, bool direct_found = true, bool scattered_found = true,
-              std::uint32_t material = 0) {
+Events events(std::uint32_t paths, double direct, double scattered, bool direct_found = true,
+              bool scattered_found = true, std::uint32_t material = 0) {
     std::mt19937 generator(16);
     const Flux16 arriving = random_flux(generator, 0.5, 1.5), taken_up = random_flux(generator, 0.2, 2.0),
                  sent_on = random_flux(generator, 0.1, 1.5);

@@ -59,18 +59,17 @@ Retraced retrace_fluorescence(const Deposited& d, EventRound round, std::uint32_
     Program(test_device(), "retrace_subsurface.cl")
         .kernel("retrace_fluorescence")
         .launch(round.count, round, pass_on_device(seed, 0, offset_mm), on_device(d.exits),
-                on_device(translucent_materials()), on_device(translucent_spectra()), on_device(d.map_flux),
-                rays, flux, ledgers);
+                on_device(translucent_materials()), on_device(translucent_spectra()), on_device(d.map_flux), rays, flux,
+                ledgers);
     return {rays.download(), flux.download(), ledgers.download()};
 }
 
 const glm::dvec3 single_normal(0.6, 0.0, -0.8), multiple_normal(0.0, 1.0, 0.0);
 
-ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, double kept, bool found,
-                  std::uint32_t material = 0) {
+ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, double kept, bool found, std::uint32_t material = 0) {
     const glm::vec3 n(normal), p = 2.0f * n;
-    return {p.x,   p.y,  p.z,      found ? 1.5f : -1.5f,     n.x, n.y, n.z,
-            20.0f, path, material, 0, 1, {static_cast<float>(kept), 0}, {0, 0}};
+    return {p.x,      p.y, p.z, found ? 1.5f : -1.5f,          n.x,   n.y, n.z, 20.0f, path,
+            material, 0,   1,   {static_cast<float>(kept), 0}, {0, 0}};
 }
 
 // The same elastic event many times: shares of the incident flux that single and multiple scattering keep.
@@ -82,8 +81,7 @@ Deposited elastic_events(std::uint32_t paths, double single, double multiple, bo
     Deposited d;
     d.flux.assign(paths, incident);
     d.ledgers.assign(paths, open_ledger(incident));
-    for (std::uint32_t i = 0; i < paths; ++i)
-        d.exits.push_back(exit_at(single_normal, i, single * in, single_found));
+    for (std::uint32_t i = 0; i < paths; ++i) d.exits.push_back(exit_at(single_normal, i, single * in, single_found));
     for (std::uint32_t i = 0; i < paths; ++i)
         d.exits.push_back(exit_at(multiple_normal, i, multiple * in, multiple_found));
     return d;
@@ -164,8 +162,7 @@ Deposited fluorescent_events(std::uint32_t paths, double lowest_share, double hi
         const std::array<double, 16> converted = reradiated(materials[i % 3], spectra, d.flux[i]);
         const Flux16 share = random_flux(generator, lowest_share, highest_share);
         d.map_flux.push_back(constant_flux(0.0f));
-        for (std::size_t k = 0; k < 16; ++k)
-            d.map_flux[i].v[k] = static_cast<float>(converted[k] * double(share.v[k]));
+        for (std::size_t k = 0; k < 16; ++k) d.map_flux[i].v[k] = static_cast<float>(converted[k] * double(share.v[k]));
         d.exits.push_back(exit_at(single_normal, i, sum_of(d.map_flux[i]), i % 11 != 10, i % 3));
         d.exits[i].event_light.energy = static_cast<float>(std::accumulate(converted.begin(), converted.end(), 0.0));
     }
@@ -197,8 +194,7 @@ TEST_CASE("elastic ledgers close, whatever was missed or cut", "[retrace][tiny]"
         for (const int missed : {0, 1, 2, 3})
             for (const std::uint32_t last : {0u, 1u}) {
                 CAPTURE(single, multiple, missed, last);
-                const Deposited d =
-                    elastic_events(40, single, multiple, (missed & 1) == 0, (missed & 2) == 0);
+                const Deposited d = elastic_events(40, single, multiple, (missed & 1) == 0, (missed & 2) == 0);
                 const Retraced r = retrace_elastic(d, 32, last);
                 CHECK(worst_imbalance(r.ledgers, r.flux) < 1e-5);
                 for (const PathLedger& ledger : r.ledgers) {

@@ -7,10 +7,9 @@ using namespace stokes;
 
 // Expected words: known-answer file of the Random123 distribution (philox 4x32-10).
 TEST_CASE("philox4x32-10 gives the published words", "[rng][tiny]") {
-    const std::vector<std::uint32_t> in = {0,          0,          0,          0,          0,
-                                           0,          0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff,
-                                           0xffffffff, 0xffffffff, 0x243f6a88, 0x85a308d3, 0x13198a2e,
-                                           0x03707344, 0xa4093822, 0x299f31d0};
+    const std::vector<std::uint32_t> in = {0,          0,          0,          0,          0,          0,
+                                           0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff,
+                                           0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344, 0xa4093822, 0x299f31d0};
     const std::vector<std::uint32_t> expected = {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8,
                                                  0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd,
                                                  0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1};
@@ -35,8 +34,7 @@ TEST_CASE("uniforms fill [0, 1) evenly and dimensions differ", "[rng]") {
         }
         double chi2 = 0.0;
         for (double b : bins) chi2 += (b - n / 16.0) * (b - n / 16.0) / (n / 16.0);
-        CHECK(chi2 <
-              114.0);  // chi-square with 63 degrees of freedom, upper tail 1e-4 (two draws, fixed seed)
+        CHECK(chi2 < 114.0);  // chi-square with 63 degrees of freedom, upper tail 1e-4 (two draws, fixed seed)
         CHECK(u != previous);
         previous = u;
     }

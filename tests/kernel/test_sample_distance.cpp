@@ -13,9 +13,7 @@ using namespace stokes;
 namespace {
 
 MediumSpectra marble() {
-    return {"marble",
-            {{464.0, 611.0}, {1.5, 1.1}, Outside::hold},
-            {{464.0, 611.0}, {0.007, 0.002}, Outside::hold}};
+    return {"marble", {{464.0, 611.0}, {1.5, 1.1}, Outside::hold}, {{464.0, 611.0}, {0.007, 0.002}, Outside::hold}};
 }
 
 // The density a table asks for at one angle, in double precision from the table's own values: the mean over
@@ -25,24 +23,22 @@ struct AnalyticDensity {
 
     AnalyticDensity(const PowerTable& table, double theta_deg) : r_mm(table.axis("r")->values) {
         const TableAxis* theta = table.axis("theta");
-        const std::size_t rows = theta ? theta->values.size() : 1,
-                          lambdas = table.axis("lambda")->values.size();
+        const std::size_t rows = theta ? theta->values.size() : 1, lambdas = table.axis("lambda")->values.size();
         std::size_t row = 0;
         while (row + 2 < rows && theta->values[row + 1] <= theta_deg) ++row;
         const std::size_t next = std::min(row + 1, rows - 1);
         const double w =
             rows == 1
                 ? 0.0
-                : std::clamp((theta_deg - theta->values[row]) / (theta->values[next] - theta->values[row]),
-                             0.0, 1.0);
+                : std::clamp((theta_deg - theta->values[row]) / (theta->values[next] - theta->values[row]), 0.0, 1.0);
         for (std::size_t r = 0; r < r_mm.size(); ++r) {
             double sum = 0.0;
             for (std::size_t i = 0; i < lambdas; ++i)
                 sum += (1.0 - w) * table.values[(r * rows + row) * lambdas + i] +
                        w * table.values[(r * rows + next) * lambdas + i];
             mean.push_back(sum / static_cast<double>(lambdas));
-            cumulative.push_back(
-                r == 0 ? 0.0 : cumulative.back() + 0.5 * (mean[r - 1] + mean[r]) * (r_mm[r] - r_mm[r - 1]));
+            cumulative.push_back(r == 0 ? 0.0
+                                        : cumulative.back() + 0.5 * (mean[r - 1] + mean[r]) * (r_mm[r] - r_mm[r - 1]));
         }
     }
     // Probability of a distance below r.
@@ -59,8 +55,7 @@ struct AnalyticDensity {
         for (std::size_t i = 0; i + 1 < r_mm.size(); ++i) {
             const double middle = 0.5 * (r_mm[i] + r_mm[i + 1]);
             sum += (r_mm[i + 1] - r_mm[i]) / 6.0 *
-                   (std::pow(r_mm[i], power) * mean[i] +
-                    std::pow(middle, power) * 2.0 * (mean[i] + mean[i + 1]) +
+                   (std::pow(r_mm[i], power) * mean[i] + std::pow(middle, power) * 2.0 * (mean[i] + mean[i + 1]) +
                     std::pow(r_mm[i + 1], power) * mean[i + 1]);
         }
         return sum / cumulative.back();
@@ -76,10 +71,8 @@ std::vector<float> draw(const PowerTable& table, float theta_deg, const std::vec
     mean.insert(mean.end(), sampler.mean_rows.begin(), sampler.mean_rows.end());
     cumulative.insert(cumulative.end(), sampler.cumulative_rows.begin(), sampler.cumulative_rows.end());
     Device& device = test_device();
-    const Buffer<float> mean_rows(device, "mean rows", mean),
-        cumulative_rows(device, "cumulative rows", cumulative);
-    const Buffer<float> angles(device, "angles", std::vector<float>(u.size(), theta_deg)),
-        uniforms(device, "u", u);
+    const Buffer<float> mean_rows(device, "mean rows", mean), cumulative_rows(device, "cumulative rows", cumulative);
+    const Buffer<float> angles(device, "angles", std::vector<float>(u.size(), theta_deg)), uniforms(device, "u", u);
     const Buffer<float> distances(device, "distances", u.size());
     // Built once, and never released: a simulator's own statics may be gone when this file's are destroyed.
     static Kernel& kernel = *new Kernel(test_program("power_table.cl").kernel("draw_distances"));
@@ -105,8 +98,7 @@ double distribution_p_value(const std::vector<float>& samples, const AnalyticDen
     const std::size_t bins = 2 * (density.r_mm.size() - 1);
     for (std::size_t i = 1; i <= bins; ++i) {
         const double edge = 0.5 * (density.r_mm[i / 2] + density.r_mm[(i + 1) / 2]);
-        const auto end =
-            i == bins ? sorted.end() : std::lower_bound(start, sorted.end(), static_cast<float>(edge));
+        const auto end = i == bins ? sorted.end() : std::lower_bound(start, sorted.end(), static_cast<float>(edge));
         observed.push_back(static_cast<double>(end - start));
         expected.push_back(static_cast<double>(samples.size()) * (density.below(edge) - from));
         from = density.below(edge);

@@ -19,9 +19,7 @@ struct alignas(8) Float2 {
     float x, y;
 };
 
-glm::dvec3 vec(const Float4& v) {
-    return {v.x, v.y, v.z};
-}
+glm::dvec3 vec(const Float4& v) { return {v.x, v.y, v.z}; }
 
 Float4 unit(const glm::dvec3& v) {
     const glm::dvec3 n = glm::normalize(v);
@@ -48,9 +46,7 @@ std::vector<Float4> normals() {
 TEST_CASE("tangent frames are orthonormal and right-handed", "[sampling][tiny]") {
     const std::vector<Float4> n = normals();
     const Buffer<Float4> s(test_device(), "s", n.size()), t(test_device(), "t", n.size());
-    test_program("sampling.cl")
-        .kernel("frames")
-        .launch(n.size(), on_device(n), s, t, std::uint32_t(n.size()));
+    test_program("sampling.cl").kernel("frames").launch(n.size(), on_device(n), s, t, std::uint32_t(n.size()));
     const std::vector<Float4> first = s.download(), second = t.download();
     for (std::size_t i = 0; i < n.size(); ++i) {
         CAPTURE(n[i].x, n[i].y, n[i].z);

@@ -46,15 +46,15 @@ Scattered scatter(const Arrivals& a, EventRound round, std::size_t slots, std::u
     const Buffer<PathLedger> ledgers = on_device(a.ledgers);
     const Buffer<PhotonHead> heads = on_device(std::vector<PhotonHead>(slots, PhotonHead{0, 0, 0, empty}));
     const bool textured = !a.textures.empty();
-    const DeviceTextures textures =
-        textured ? DeviceTextures{on_device(a.textures), on_device(a.texels), on_device(a.uv)}
-                 : no_textures(a.spectra.size());
+    const DeviceTextures textures = textured
+                                        ? DeviceTextures{on_device(a.textures), on_device(a.texels), on_device(a.uv)}
+                                        : no_textures(a.spectra.size());
     const Buffer<Hit> hits = on_device(textured ? a.hits : std::vector<Hit>(a.flux.size(), Hit{}));
     Program(test_device(), "scatter_photons.cl")
         .kernel("scatter_diffuse")
-        .launch(round.count, round, pass_on_device(seed, 0, offset_mm), on_device(a.list),
-                on_device(a.points), hits, on_device(a.spectra), textures.records, textures.texels,
-                textures.uv, rays, flux, ledgers, heads, map_flux);
+        .launch(round.count, round, pass_on_device(seed, 0, offset_mm), on_device(a.list), on_device(a.points), hits,
+                on_device(a.spectra), textures.records, textures.texels, textures.uv, rays, flux, ledgers, heads,
+                map_flux);
     return {rays.download(), flux.download(), ledgers.download(), heads.download(), map_flux.download()};
 }
 
@@ -155,8 +155,7 @@ TEST_CASE("many photons are stored with what they bring, and their ledgers close
     check_all(20001);
 }
 
-TEST_CASE("nothing is stored beyond the last slot, and the paths go on all the same",
-          "[scatter_photons][tiny]") {
+TEST_CASE("nothing is stored beyond the last slot, and the paths go on all the same", "[scatter_photons][tiny]") {
     const Arrivals a = random_arrivals(200);
     const Scattered all = scatter(a, round_from(3, 200), 200), some = scatter(a, round_from(3, 50), 200);
     for (std::uint32_t slot = 0; slot < 200; ++slot) {
@@ -203,8 +202,7 @@ TEST_CASE("a photon without flux ends", "[scatter_photons][tiny]") {
 
 // Materials 2 and 3 with one texture, white where material 1 is, at the luminances 0.25 and 0.75 of the
 // middles of its two texels; the others without.
-TEST_CASE("a texture's reflectance is what the photon that meets it loses and keeps",
-          "[scatter_photons][tiny]") {
+TEST_CASE("a texture's reflectance is what the photon that meets it loses and keeps", "[scatter_photons][tiny]") {
     Arrivals a = random_arrivals(400);
     const TextureRecord none{0, 0, 0, STOKES_NONE}, texture{2, 1, 0, 1};
     a.textures = {none, none, texture, texture};
@@ -226,8 +224,7 @@ TEST_CASE("a texture's reflectance is what the photon that meets it loses and ke
         CHECK(double(s.ledgers[path].absorbed.energy) == Approx(arriving - leaving).margin(1e-4));
         if (s.ledgers[path].fate != STOKES_FATE_ALIVE) continue;
         for (std::size_t k = 0; k < 16; ++k)
-            CHECK(double(s.flux[path].v[k]) ==
-                  Approx(double(reflected.v[k]) * arriving / leaving).epsilon(1e-5));
+            CHECK(double(s.flux[path].v[k]) == Approx(double(reflected.v[k]) * arriving / leaving).epsilon(1e-5));
     }
 }
 

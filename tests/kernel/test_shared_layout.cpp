@@ -71,8 +71,8 @@ using namespace stokes;
         F(PassConstants, to_z) F(PassConstants, chain) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
         F(PassConstants, offset_mm) F(PassConstants, transport) F(PassConstants, first_collision_only) \
-        F(PassConstants, stratified) F(PassConstants, even_pixels) F(PassConstants, strata) \
-        F(PassConstants, level_shares) F(PassConstants, even_exits) F(PassConstants, pad1) \
+        F(PassConstants, stratified) F(PassConstants, low_discrepancy_pixels) F(PassConstants, strata) \
+        F(PassConstants, level_shares) F(PassConstants, low_discrepancy_exits) F(PassConstants, pad1) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
         F(PathLedger, escaped) F(PathLedger, dropped) F(PathLedger, roulette) F(PathLedger, created) \
         F(PathLedger, stored) F(PathLedger, fate) F(PathLedger, missed_exits) F(PathLedger, rays) \
@@ -84,7 +84,7 @@ using namespace stokes;
     S(WalkSlots) F(WalkSlots, first) F(WalkSlots, limit) F(WalkSlots, pad) \
     S(SurfacePoint) F(SurfacePoint, x) F(SurfacePoint, y) F(SurfacePoint, z) F(SurfacePoint, material) \
         F(SurfacePoint, nx) F(SurfacePoint, ny) F(SurfacePoint, nz) F(SurfacePoint, body) \
-    S(EventWords) F(EventWords, first) F(EventWords, second) \
+    S(EventSample) F(EventSample, first) F(EventSample, second) \
     S(ExitPoint) F(ExitPoint, x) F(ExitPoint, y) F(ExitPoint, z) F(ExitPoint, r_mm) F(ExitPoint, nx) \
         F(ExitPoint, ny) F(ExitPoint, nz) F(ExitPoint, row) F(ExitPoint, path) F(ExitPoint, material) \
         F(ExitPoint, way_mm) F(ExitPoint, scale) F(ExitPoint, kept) F(ExitPoint, event_light) \
@@ -161,9 +161,7 @@ std::string layout_kernel(const std::vector<Entry>& all) {
 TEST_CASE("shared structs have one layout on host and device", "[shared_layout][tiny]") {
     const std::vector<Entry> all = entries();
     const Buffer<std::uint32_t> out(test_device(), "layout", all.size());
-    Program::from_source(test_device(), "shared_layout.cl", layout_kernel(all))
-        .kernel("report_layout")
-        .launch(1, out);
+    Program::from_source(test_device(), "shared_layout.cl", layout_kernel(all)).kernel("report_layout").launch(1, out);
     const std::vector<std::uint32_t> device = out.download();
     for (std::size_t i = 0; i < all.size(); ++i) {
         CAPTURE(all[i].name);
@@ -201,8 +199,7 @@ TEST_CASE("the layout test knows every shared struct", "[shared_layout]") {
     std::size_t found = 0;
     for (const std::string& header : shared_headers()) {
         const std::string& text = embedded_files().at("kernels/" + header);
-        for (std::size_t at = text.find(mark); at != std::string::npos;
-             at = text.find(mark, at + 1), ++found) {
+        for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1), ++found) {
             const std::size_t name = at + mark.size();
             const std::string type = text.substr(name, text.find(' ', name) - name);
             CAPTURE(header, type);

@@ -13,8 +13,8 @@ std::vector<PathLedger> random_ledgers(std::uint32_t count) {
     std::uniform_real_distribution<float> uniform(-0.5f, 2.0f);
     std::vector<PathLedger> ledgers(count);
     for (PathLedger& l : ledgers) {
-        for (LightSum* x : {&l.emitted, &l.absorbed, &l.stokes_loss, &l.escaped, &l.dropped, &l.roulette,
-                            &l.created, &l.stored})
+        for (LightSum* x :
+             {&l.emitted, &l.absorbed, &l.stokes_loss, &l.escaped, &l.dropped, &l.roulette, &l.created, &l.stored})
             *x = {uniform(generator), 500.0f * uniform(generator)};
         l.reference_flux = uniform(generator);
         l.reflections = std::uint32_t(generator() % 5);

@@ -24,8 +24,7 @@ struct Pictures {
         uv.push_back({-0.5f, 2.0f, 1.7f, -0.3f, 0.4f, 0.9f});  // beyond the picture in places
     }
 
-    std::vector<float> luminances(const std::vector<std::uint32_t>& materials,
-                                  const std::vector<Hit>& hits) const {
+    std::vector<float> luminances(const std::vector<std::uint32_t>& materials, const std::vector<Hit>& hits) const {
         const Device& device = test_device();
         const Buffer<float> found(device, "found", hits.size());
         test_program("texture.cl")
@@ -41,8 +40,8 @@ struct Pictures {
 // The picture as a function of place: bilinear between the middles of texels, in double precision.
 double picture_twin(const TextureRecord& picture, const std::vector<float>& texels, double u, double v) {
     const auto texel = [&](double x, double y) {
-        return double(texels[picture.first_texel + static_cast<std::size_t>(y) * picture.width +
-                             static_cast<std::size_t>(x)]);
+        return double(
+            texels[picture.first_texel + static_cast<std::size_t>(y) * picture.width + static_cast<std::size_t>(x)]);
     };
     const double x = std::clamp(u * picture.width - 0.5, 0.0, picture.width - 1.0);
     const double y = std::clamp(v * picture.height - 0.5, 0.0, picture.height - 1.0);
@@ -74,8 +73,7 @@ TEST_CASE("textures are bilinear between the middles of texels, and clamped", "[
         const double at_u = (1 - u - v) * double(t.u0) + u * double(t.u1) + v * double(t.u2);
         const double at_v = (1 - u - v) * double(t.v0) + u * double(t.v1) + v * double(t.v2);
         const double expected =
-            materials[i] == 0 ? 0.0
-                              : picture_twin(pictures.records[materials[i]], pictures.texels, at_u, at_v);
+            materials[i] == 0 ? 0.0 : picture_twin(pictures.records[materials[i]], pictures.texels, at_u, at_v);
         CHECK(std::abs(double(found[i]) - expected) < 1e-5);
     }
 }
@@ -112,8 +110,7 @@ TEST_CASE("a texture blends its two reflectances by its luminance", "[textures][
             const std::size_t white = m == 0 ? 0 : pictures.records[m].white_row;
             Flux16 blend{};
             for (std::size_t k = 0; k < 16; ++k)
-                blend.v[k] =
-                    (1.0f - luminances.back()) * spectra[m].v[k] + luminances.back() * spectra[white].v[k];
+                blend.v[k] = (1.0f - luminances.back()) * spectra[m].v[k] + luminances.back() * spectra[white].v[k];
             expected.push_back(blend);
         }
     const Device& device = test_device();
@@ -122,9 +119,8 @@ TEST_CASE("a texture blends its two reflectances by its luminance", "[textures][
         .kernel("reflectances")
         .launch(materials.size(), Buffer<std::uint32_t>(device, "materials", materials),
                 Buffer<float>(device, "luminances", luminances),
-                Buffer<TextureRecord>(device, "records", pictures.records),
-                Buffer<Flux16>(device, "spectra", spectra), found,
-                static_cast<std::uint32_t>(materials.size()));
+                Buffer<TextureRecord>(device, "records", pictures.records), Buffer<Flux16>(device, "spectra", spectra),
+                found, static_cast<std::uint32_t>(materials.size()));
     const std::vector<Flux16> blends = found.download();
     for (std::size_t i = 0; i < blends.size(); ++i)
         for (std::size_t k = 0; k < 16; ++k) CHECK(blends[i].v[k] == Approx(expected[i].v[k]).margin(1e-6));

@@ -16,8 +16,8 @@ namespace {
 
 // Nothing that lies clearly on the segment, and clearly within a triangle, is nearer than the hit; and the
 // hit is on the ray and on its triangle. tolerance_mm: rounding of coordinates.
-int count_wrong(const std::vector<Triangle>& triangles, const std::vector<Ray>& rays,
-                const std::vector<Hit>& hits, double tolerance_mm) {
+int count_wrong(const std::vector<Triangle>& triangles, const std::vector<Ray>& rays, const std::vector<Hit>& hits,
+                double tolerance_mm) {
     int wrong = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Ray& r = rays[i];
@@ -27,17 +27,14 @@ int count_wrong(const std::vector<Triangle>& triangles, const std::vector<Ray>& 
         bool good = true;
         for (const Triangle& triangle : triangles) {
             const double nearer = crossing(triangle, o, d, 1e-3);
-            if (nearer > r.t_min + tolerance_mm && nearer < r.t_max - tolerance_mm &&
-                nearer < t - tolerance_mm)
+            if (nearer > r.t_min + tolerance_mm && nearer < r.t_max - tolerance_mm && nearer < t - tolerance_mm)
                 good = false;
         }
         if (found) {
             const Triangle& at = triangles.at(hits[i].triangle);
-            const glm::dvec3 point =
-                v0_of(at) + double(hits[i].u) * e1_of(at) + double(hits[i].v) * e2_of(at);
-            good = good && glm::length(o + t * d - point) < tolerance_mm && hits[i].u >= 0.0f &&
-                   hits[i].v >= 0.0f && hits[i].u + hits[i].v <= 1.0f + 1e-6f && hits[i].t >= r.t_min &&
-                   hits[i].t <= r.t_max;
+            const glm::dvec3 point = v0_of(at) + double(hits[i].u) * e1_of(at) + double(hits[i].v) * e2_of(at);
+            good = good && glm::length(o + t * d - point) < tolerance_mm && hits[i].u >= 0.0f && hits[i].v >= 0.0f &&
+                   hits[i].u + hits[i].v <= 1.0f + 1e-6f && hits[i].t >= r.t_min && hits[i].t <= r.t_max;
         }
         wrong += !good;
     }
@@ -88,8 +85,7 @@ TEST_CASE("rays in and along the planes of boxes find what a double-precision se
             }
     Traced scene(boxes);
     auto rays = random_rays(3000, -5.0f, 65.0f, 13);
-    for (Ray& r : rays)
-        r.ox = 5.0f * std::round(r.ox / 5.0f), r.oz = std::round(r.oz);  // on faces and their planes
+    for (Ray& r : rays) r.ox = 5.0f * std::round(r.ox / 5.0f), r.oz = std::round(r.oz);  // on faces and their planes
     flatten_directions(rays);
     const auto hits = scene.closest(rays);
     CHECK(count_wrong(scene.triangles, rays, hits, 1e-4) == 0);
@@ -106,8 +102,7 @@ TEST_CASE("segments: nearest and any hit agree, and respect both ends") {
     const auto hits = scene.closest(rays);
     const auto occluded = scene.any(rays);
     int differ = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i)
-        differ += occluded[i] != (hits[i].triangle != STOKES_NONE ? 1u : 0u);
+    for (std::size_t i = 0; i < rays.size(); ++i) differ += occluded[i] != (hits[i].triangle != STOKES_NONE ? 1u : 0u);
     CHECK(differ == 0);
     CHECK(count_hits(hits) > 2000);
     rays.resize(2000);
@@ -182,8 +177,7 @@ TEST_CASE("rays from very far away meet what a double-precision search meets, cl
             wrong += found != std::isfinite(nearest);
             if (!found || !std::isfinite(nearest)) continue;
             const Triangle& at = triangles.at(hits[i].triangle);
-            const glm::dvec3 point =
-                v0_of(at) + double(hits[i].u) * e1_of(at) + double(hits[i].v) * e2_of(at);
+            const glm::dvec3 point = v0_of(at) + double(hits[i].u) * e1_of(at) + double(hits[i].v) * e2_of(at);
             wrong += glm::length(o + nearest * d - point) > 1e-3;
             wrong += std::fabs(hits[i].t - nearest) > 1e-6 * away;
         }
@@ -263,8 +257,8 @@ TEST_CASE("a list traces its rays and leaves the others' hits alone", "[tiny]") 
     const Hit untouched{-5.0f, -5.0f, -5.0f, 12345u};
     const Buffer<Hit> out(test_device(), "hits", std::vector<Hit>(rays.size(), untouched));
     scene.program.kernel("trace_closest")
-        .launch(list.size(), indices, static_cast<cl_uint>(list.size()), scene.nodes, scene.blocks,
-                scene.bvh.grid, in, out);
+        .launch(list.size(), indices, static_cast<cl_uint>(list.size()), scene.nodes, scene.blocks, scene.bvh.grid, in,
+                out);
     std::vector<Hit> expected(rays.size(), untouched);
     const auto all = scene.closest(rays);
     for (const cl_uint i : list) expected[i] = all[i];

@@ -9,9 +9,7 @@ using namespace stokes;
 
 namespace {
 
-double u1_of(const GreenTable& nodes, std::size_t a, std::size_t z) {
-    return nodes.u1[a * nodes.z.size() + z];
-}
+double u1_of(const GreenTable& nodes, std::size_t a, std::size_t z) { return nodes.u1[a * nodes.z.size() + z]; }
 
 }  // namespace
 

@@ -4,14 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "kernels/shared/material.h"
 #include "tests/support/catch.hpp"
 #include "tests/support/normals.hpp"
 #include "tests/support/photon_fixture.hpp"
 #include "tests/support/statistics.hpp"
 #include "tests/support/traced_scene.hpp"
 #include "tests/support/triangle_meshes.hpp"
-
-#include "kernels/shared/material.h"
 
 using namespace stokes;
 
@@ -153,9 +152,7 @@ int map_of(const Walked& w, std::size_t i) {
     return found;
 }
 
-glm::dvec3 normal_of(const PhotonHead& head) {
-    return glm::normalize(unpack_normal_twin(head.normal));
-}
+glm::dvec3 normal_of(const PhotonHead& head) { return glm::normalize(unpack_normal_twin(head.normal)); }
 
 glm::dvec3 place_of(const PhotonHead& head) { return {head.x, head.y, head.z}; }
 
@@ -204,7 +201,8 @@ void check_walks(const Entering& e, const Options& options = {}) {
     for (std::uint32_t path = 0; path < e.rays.size(); ++path)
         if (listed.count(path) == 0)
             CHECK((std::memcmp(&w.ledgers[path], &e.ledgers[path], sizeof(PathLedger)) == 0 &&
-                   std::memcmp(&w.rays[path], &e.rays[path], sizeof(Ray)) == 0 && same_bits(w.flux[path], e.flux[path])));
+                   std::memcmp(&w.rays[path], &e.rays[path], sizeof(Ray)) == 0 &&
+                   same_bits(w.flux[path], e.flux[path])));
     for (std::size_t i = 0; i < e.list.size(); ++i) {
         CAPTURE(i, e.list[i], e.points[e.list[i]].material, w.ledgers[e.list[i]].fate);
         const PathLedger& ledger = w.ledgers[e.list[i]];
@@ -300,8 +298,9 @@ TEST_CASE("a wavelength's weight has mean one and never exceeds sixteen", "[walk
 // the entry, in octaves: 64 comparisons at 4.5 standard errors, wrong once in 2000.
 TEST_CASE("light leaves where it does without short cuts through the deep", "[walk_photons]") {
     Entering e(160000, {pale}, true);
-    e.list.erase(std::remove_if(e.list.begin(), e.list.end(), [&](std::uint32_t path) { return e.points[path].body == 0; }),
-                 e.list.end());
+    e.list.erase(
+        std::remove_if(e.list.begin(), e.list.end(), [&](std::uint32_t path) { return e.points[path].body == 0; }),
+        e.list.end());
     const auto leaving = [&](const std::vector<std::string>& compiler) {
         Options options;
         options.compiler = compiler;
@@ -319,7 +318,8 @@ TEST_CASE("light leaves where it does without short cuts through the deep", "[wa
             }
             for (std::size_t k = 0; k < 16; ++k)
                 for (std::size_t bin = 0; bin < 4; ++bin)
-                    by_distance[k][bin].add(std::min(int(place), 3) == int(bin) && place >= 0.0 ? double(flux.v[k]) : 0.0);
+                    by_distance[k][bin].add(std::min(int(place), 3) == int(bin) && place >= 0.0 ? double(flux.v[k])
+                                                                                                : 0.0);
         }
         return by_distance;
     };

@@ -133,6 +133,4 @@ TEST_CASE("aimed and stratified emission leave the picture as it is, with less n
     check_emission(Transport::conserving);
 }
 
-TEST_CASE("the same by the paper's tables", "[emission][.long]") {
-    check_emission(Transport::paper);
-}
+TEST_CASE("the same by the paper's tables", "[emission][.long]") { check_emission(Transport::paper); }

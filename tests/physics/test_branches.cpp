@@ -59,7 +59,7 @@ Stored measured(Scene scene, Branches branches, int exits, std::uint32_t seed, b
     const Device& device = test_device();
     const DeviceScene on_device(device, scene);
     PassMaker pass(device, scene, on_device);
-    if (even) pass.set_emission(EmissionCells::even(emitting_lights(scene, on_device), photons));
+    if (even) pass.set_emission(EmissionCells::stratified(emitting_lights(scene, on_device), photons));
     PhotonTracer tracer(device, on_device.rays.kernels, photons);
     PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                     PhotonMap(device, "surface", 16)};
@@ -154,8 +154,7 @@ TEST_CASE("light that enters again and again is the same by both branches", "[br
         CAPTURE(static_cast<int>(transport));
         const Stored roulette = measured(scene, Branches::roulette, 1, 5), both = measured(scene, Branches::both, 2, 6);
         check_same(roulette, both, 0.3);
-        if (transport == Transport::conserving)
-            CHECK(variance_ratio(both, roulette, STOKES_MAP_FLUORESCENCE) < 0.6);
+        if (transport == Transport::conserving) CHECK(variance_ratio(both, roulette, STOKES_MAP_FLUORESCENCE) < 0.6);
     }
 }
 
@@ -180,12 +179,14 @@ TEST_CASE("the paper's light leaves as far from its entry however that is drawn"
     }
 }
 
-// Photons of a narrow beam, so that where they start makes no noise within the distances: what is left is that of the exits.
+// Photons of a narrow beam, so that where they start makes no noise within the distances: what is left is that of the
+// exits.
 TEST_CASE("exits that go with an even start store the same light with less noise", "[branches]") {
     for (const Transport transport : {Transport::conserving, Transport::paper}) {
         const Scene scene = uneven(slab_scene(0.4, 45.0, transport));
         CAPTURE(static_cast<int>(transport));
-        const Stored random = measured(scene, Branches::both, 1, 10), even = measured(scene, Branches::both, 1, 11, true);
+        const Stored random = measured(scene, Branches::both, 1, 10),
+                     even = measured(scene, Branches::both, 1, 11, true);
         check_same(random, even, 0.1);
         CHECK(variance_ratio(even, random, STOKES_MAP_MULTIPLE) < 0.6);
         // By `conserving` its noise is that of the way to the first collision.

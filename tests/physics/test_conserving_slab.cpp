@@ -60,10 +60,9 @@ struct Case {
 TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[conserving]") {
     const Device& device = test_device();
     constexpr Branches roulette = Branches::roulette, both = Branches::both;
-    for (const Case& c :
-         {Case{0.4, 0.0, false, 1.0, roulette, 1}, Case{0.7, 60.0, false, 60.0, roulette, 1},
-          Case{0.4, 45.0, true, 30.0, roulette, 1}, Case{0.4, 0.0, false, 1.0, both, 1},
-          Case{0.7, 60.0, false, 60.0, both, 3}, Case{0.4, 45.0, true, 30.0, both, 1}}) {
+    for (const Case& c : {Case{0.4, 0.0, false, 1.0, roulette, 1}, Case{0.7, 60.0, false, 60.0, roulette, 1},
+                          Case{0.4, 45.0, true, 30.0, roulette, 1}, Case{0.4, 0.0, false, 1.0, both, 1},
+                          Case{0.7, 60.0, false, 60.0, both, 3}, Case{0.4, 45.0, true, 30.0, both, 1}}) {
         Scene scene = slab_scene(c.fraction, c.angle_deg, Transport::conserving);
         scene.materials[0].fresnel = c.fresnel;
         scene.render.branches = c.branches;

@@ -130,12 +130,10 @@ void check_convergence(double last, std::uint32_t seeds) {
 
 }  // namespace
 
-TEST_CASE("the error falls with the cube root of the passes", "[convergence]") {
-    check_convergence(128.0, 8);
-}
+TEST_CASE("the error falls with the cube root of the passes", "[convergence]") { check_convergence(128.0, 8); }
 
-// All light here is direct: without photons nothing is blurred, and independent draws would give a slope of -1/2. Those of
-// a pixel are spread over the passes.
+// All light here is direct: without photons nothing is blurred, and independent draws would give a slope of -1/2. Those
+// of a pixel are spread over the passes.
 TEST_CASE("the error of direct light by rays falls faster than the root of the passes", "[convergence]") {
     const std::vector<double> counts = doublings(8.0, 128.0);
     Sample slope;

@@ -133,8 +133,7 @@ TEST_CASE("a rectangle that emits is seen with its radiance", "[floor]") {
         for (std::size_t i = 0; i < image.pixels() * 3; ++i) {
             for (const auto& layer : image.xyz)
                 if (&layer != &image.xyz[3]) CHECK(layer[i] == 0.0f);
-            CHECK(static_cast<double>(image.xyz[3][i]) ==
-                  Approx(expected[static_cast<int>(i % 3)]).epsilon(1e-5));
+            CHECK(static_cast<double>(image.xyz[3][i]) == Approx(expected[static_cast<int>(i % 3)]).epsilon(1e-5));
         }
     }
 }
@@ -165,10 +164,8 @@ TEST_CASE("a sphere that emits irradiates a floor by the form factor of a sphere
         const int steps = 200;
         for (int i = 0; i < steps; ++i)
             for (int j = 0; j < steps; ++j) {
-                const double x = x_mm + edge_mm * ((i + 0.5) / steps - 0.5),
-                             z = edge_mm * ((j + 0.5) / steps - 0.5);
-                form += height_mm / std::pow(x * x + z * z + height_mm * height_mm, 1.5) /
-                        (4.0 * M_PI * steps * steps);
+                const double x = x_mm + edge_mm * ((i + 0.5) / steps - 0.5), z = edge_mm * ((j + 0.5) / steps - 0.5);
+                form += height_mm / std::pow(x * x + z * z + height_mm * height_mm, 1.5) / (4.0 * M_PI * steps * steps);
             }
         const Sample ratio = brightness(scene, lamp.flux.scaled(form * 1e6 * reflectance / M_PI), 16);
         CAPTURE(ratio.mean(), ratio.standard_error());

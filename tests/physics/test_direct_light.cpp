@@ -40,8 +40,8 @@ glm::dvec3 block_mean(const FilmImage& image, int component, int left, int top, 
     for (int y = top; y < top + edge; ++y)
         for (int x = left; x < left + edge; ++x)
             for (int k = 0; k < 3; ++k)
-                sum[k] += static_cast<double>(
-                    image.xyz[static_cast<std::size_t>(component)][static_cast<std::size_t>((y * image.width + x) * 3 + k)]);
+                sum[k] += static_cast<double>(image.xyz[static_cast<std::size_t>(component)]
+                                                       [static_cast<std::size_t>((y * image.width + x) * 3 + k)]);
     return sum / static_cast<double>(edge * edge);
 }
 
@@ -72,8 +72,8 @@ Stored trace(const Scene& scene) {
 
 template <class T>
 bool same_end(const std::vector<T>& longer, const std::vector<T>& shorter) {
-    return longer.size() >= shorter.size() &&
-           std::memcmp(longer.data() + (longer.size() - shorter.size()), shorter.data(), shorter.size() * sizeof(T)) == 0;
+    return longer.size() >= shorter.size() && std::memcmp(longer.data() + (longer.size() - shorter.size()),
+                                                          shorter.data(), shorter.size() * sizeof(T)) == 0;
 }
 
 }  // namespace
@@ -96,9 +96,12 @@ TEST_CASE("rays and photons bring the same direct light in the mean", "[direct_l
             CHECK(a.xyz[static_cast<std::size_t>(component)] == b.xyz[static_cast<std::size_t>(component)]);
         for (int i = 0; i <= columns * rows; ++i) {
             const bool whole = i == columns * rows;
-            const glm::dvec3 x = whole ? mean_xyz(a, Component::surface) : block_mean(a, 3, i % columns * edge, i / columns * edge, edge);
-            const glm::dvec3 y = whole ? mean_xyz(b, Component::surface) : block_mean(b, 3, i % columns * edge, i / columns * edge, edge);
-            for (int k = 0; k < 3; ++k) differences[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)].add(x[k] - y[k]);
+            const glm::dvec3 x = whole ? mean_xyz(a, Component::surface)
+                                       : block_mean(a, 3, i % columns * edge, i / columns * edge, edge);
+            const glm::dvec3 y = whole ? mean_xyz(b, Component::surface)
+                                       : block_mean(b, 3, i % columns * edge, i / columns * edge, edge);
+            for (int k = 0; k < 3; ++k)
+                differences[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)].add(x[k] - y[k]);
             if (whole) brightness.add(y.y);
         }
     }
@@ -106,7 +109,8 @@ TEST_CASE("rays and photons bring the same direct light in the mean", "[direct_l
     for (std::size_t i = 0; i < differences.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) {
             const Sample& d = differences[i][k];
-            const double beyond = std::max(0.0, std::abs(d.mean()) - (i + 1 == differences.size() ? 0.003 : 0.02) * brightness.mean());
+            const double beyond =
+                std::max(0.0, std::abs(d.mean()) - (i + 1 == differences.size() ? 0.003 : 0.02) * brightness.mean());
             CAPTURE(i, k, d.mean(), d.standard_error(), brightness.mean());
             CHECK((beyond == 0.0 || normal_two_sided(normal_of_t(beyond / d.standard_error(), passes - 1.0)) > level));
         }

@@ -38,8 +38,8 @@ TEST_CASE("light that grows without bound is cut and counted", "[overflow]") {
     const Balance ledger = renderer.book().ledger().power;
     CHECK(renderer.book().dropped().at("overflow") + renderer.book().dropped().at("event_limit") > 0);
     CHECK(ledger.created > ledger.emitted);
-    for (const double v : {ledger.absorbed, ledger.stokes_loss, ledger.dropped, ledger.roulette, ledger.created,
-                           ledger.stored})
+    for (const double v :
+         {ledger.absorbed, ledger.stokes_loss, ledger.dropped, ledger.roulette, ledger.created, ledger.stored})
         CHECK(std::isfinite(v));
     CHECK(count_non_finite(renderer.image()) == 0);
 }

@@ -15,9 +15,9 @@ using namespace stokes;
 // (PHYSICS section 7). The film's Y of a radiance L constant over wavelength is, in a pass with the set of wavelengths
 // that was drawn, 683.002 L N/n sum of ybar over the set: no noise from the wavelengths is left in the comparison.
 TEST_CASE("radiance in a closed furnace is 1 / (1 - R)", "[furnace]") {
-    for (const auto& [reflectance, direct] : {std::pair(0.0, Direct::photons), std::pair(0.5, Direct::photons),
-                                              std::pair(0.8, Direct::photons), std::pair(0.0, Direct::rays),
-                                              std::pair(0.5, Direct::rays), std::pair(0.8, Direct::rays)}) {
+    for (const auto& [reflectance, direct] :
+         {std::pair(0.0, Direct::photons), std::pair(0.5, Direct::photons), std::pair(0.8, Direct::photons),
+          std::pair(0.0, Direct::rays), std::pair(0.5, Direct::rays), std::pair(0.8, Direct::rays)}) {
         const bool rays = direct == Direct::rays;
         CAPTURE(reflectance, rays);
         Scene scene = furnace_scene(reflectance);
@@ -46,7 +46,8 @@ TEST_CASE("radiance in a closed furnace is 1 / (1 - R)", "[furnace]") {
         const Balance ledger = renderer.book().ledger().power;
         CHECK(std::abs(ledger.imbalance()) < 1e-4);
         CHECK(ledger.escaped == 0.0);
-        // Each photon is stored once at every event: the flux that arrives is emitted / (1 - R). By rays, but for the first.
+        // Each photon is stored once at every event: the flux that arrives is emitted / (1 - R). By rays, but for the
+        // first.
         CHECK(ledger.stored == Approx(ledger.emitted * (rays ? expected - 1.0 : expected)).epsilon(0.02));
     }
 }

@@ -97,9 +97,7 @@ TEST_CASE("the decay deep in the medium solves its equation", "[green_escape]") 
 }
 
 TEST_CASE("escape refuses what is no half-space", "[green_escape]") {
-    CHECK(input_error([] { HalfSpaceEscape(0.9, {1.0}); }) ==
-          "eta 0.9: expected a refractive index from 1 to 4");
+    CHECK(input_error([] { HalfSpaceEscape(0.9, {1.0}); }) == "eta 0.9: expected a refractive index from 1 to 4");
     CHECK(input_error([] { HalfSpaceEscape(std::nan(""), {1.0}); }) != "");
-    CHECK(input_error([] { HalfSpaceEscape(1.0, {1.0}).total(1.1); }) ==
-          "albedo 1.1: expected a number from 0 to 1");
+    CHECK(input_error([] { HalfSpaceEscape(1.0, {1.0}).total(1.1); }) == "albedo 1.1: expected a number from 0 to 1");
 }

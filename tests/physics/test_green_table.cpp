@@ -118,8 +118,7 @@ double p_value(const PassRows& rows, double eta, double z, std::size_t lane, std
     for (std::size_t i = 1; i < rows.shape.r_count; i += 3) nodes.push_back(i);
     std::vector<double> edges;
     for (const std::size_t i : nodes) edges.push_back(rows.r_mm(i) * kSigma);
-    DirectWalk walk{eta, z, kAlbedos[lane],
-                    std::mt19937_64(1000 * lane + static_cast<std::size_t>(100.0 * z))};
+    DirectWalk walk{eta, z, kAlbedos[lane], std::mt19937_64(1000 * lane + static_cast<std::size_t>(100.0 * z))};
     std::vector<double> observed = walk.counts(edges, photons);
     std::vector<double> expected = rows.masses(z / kSigma, lane, nodes);
     double left = static_cast<double>(photons), rest = left;

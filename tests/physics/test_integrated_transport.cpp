@@ -20,8 +20,7 @@ Scene without_tables(Scene scene) {
     return scene;
 }
 
-double power_of(std::uint32_t component, const Medium& medium, double lambda_nm, double r_mm,
-                double theta_deg) {
+double power_of(std::uint32_t component, const Medium& medium, double lambda_nm, double r_mm, double theta_deg) {
     const RefractionAngle theta = RefractionAngle::from_degrees(theta_deg);
     const double sigma_s = medium.sigma_s.at(lambda_nm), sigma_a = medium.sigma_a.at(lambda_nm);
     if (component == STOKES_MAP_FLUORESCENCE) return fluorescence_power(sigma_s + sigma_a, r_mm, theta);
@@ -40,8 +39,7 @@ std::array<double, 16> mean_power(std::uint32_t component, const Medium& medium,
     for (int i = 0; i <= steps; ++i) {
         const double x = double(i) / steps, r = 9.9 * x * x;
         double density = 0.0;
-        for (const double lambda : grid.lambda_nm)
-            density += power_of(component, medium, lambda, r, theta_deg);
+        for (const double lambda : grid.lambda_nm) density += power_of(component, medium, lambda, r, theta_deg);
         density *= x * (i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0);
         total += density;
         for (std::size_t k = 0; k < 16; ++k)
@@ -130,8 +128,7 @@ TEST_CASE("photons that integrate their power store what eq. 3-5 say", "[integra
         const double photons = static_cast<double>(scene.render.photons_per_pass);
         const double theta_deg = std::asin(std::sin(angle_deg * M_PI / 180.0) / 1.5) * 180.0 / M_PI;
         const PassConstants& pass = stored.constants;
-        for (const std::uint32_t component :
-             {STOKES_MAP_FLUORESCENCE, STOKES_MAP_SINGLE, STOKES_MAP_MULTIPLE}) {
+        for (const std::uint32_t component : {STOKES_MAP_FLUORESCENCE, STOKES_MAP_SINGLE, STOKES_MAP_MULTIPLE}) {
             const auto power = mean_power(component, scene.media[0], theta_deg, pass.lambda_nm);
             for (std::size_t i = 0; i < 16; ++i) {
                 const auto lambda = [&](std::size_t k) { return static_cast<double>(pass.lambda_nm[k]); };
@@ -146,11 +143,9 @@ TEST_CASE("photons that integrate their power store what eq. 3-5 say", "[integra
                 const double expected = start * power[i] * (component == STOKES_MAP_FLUORESCENCE ? 0.4 : 0.6);
                 const Sample& sample = stored.flux[component][i];
                 // Binomial number of events times the spread of their flux.
-                const double share = static_cast<double>(sample.count()) / photons,
-                             mean = sample.mean() * share;
+                const double share = static_cast<double>(sample.count()) / photons, mean = sample.mean() * share;
                 const double second = (sample.variance() + sample.mean() * sample.mean()) * share;
-                const double sum = mean * photons,
-                             error = std::sqrt(std::max(second - mean * mean, 0.0) * photons);
+                const double sum = mean * photons, error = std::sqrt(std::max(second - mean * mean, 0.0) * photons);
                 CAPTURE(angle_deg, component, lambda(i), sum, expected, error);
                 CHECK(std::abs(sum - expected) <= 4.5 * error + 7e-4 * expected);
                 if (expected > 0.0) CHECK(error < 0.02 * expected);

@@ -67,7 +67,8 @@ double brightness(const FilmImage& image, int x, int y) {
     double sum = 0.0;
     for (const auto& layer : image.xyz)
         sum += static_cast<double>(layer[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                              static_cast<std::size_t>(x)) + 1]);
+                                              static_cast<std::size_t>(x)) +
+                                         1]);
     return sum;
 }
 
@@ -103,8 +104,8 @@ TEST_CASE("a lit top does not shine through the edge onto a dark side", "[leaks]
     }
 }
 
-// Where the lit sheet ends, the dark one below is seen, in the light of neither: the beam ends on the upper sheet, which
-// throws none down. The gap is 0.075 of the radius.
+// Where the lit sheet ends, the dark one below is seen, in the light of neither: the beam ends on the upper sheet,
+// which throws none down. The gap is 0.075 of the radius.
 TEST_CASE("a sheet close above another does not light it", "[leaks]") {
     for (const Radii radii : {Radii::one, Radii::local}) {
         Scene scene = dark_scene(radii);

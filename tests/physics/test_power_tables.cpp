@@ -26,17 +26,14 @@ double value_at(const PowerTable& table, std::size_t r, std::size_t theta, std::
     return table.values[(r * 100 + theta) * 100 + lambda];
 }
 
-double simpson(double a, double b, double fa, double fm, double fb) {
-    return (b - a) / 6.0 * (fa + 4.0 * fm + fb);
-}
+double simpson(double a, double b, double fa, double fm, double fb) { return (b - a) / 6.0 * (fa + 4.0 * fm + fb); }
 
-double refine(const std::function<double(double)>& f, double a, double b, double fa, double fm, double fb,
-              double whole, double tolerance, int depth) {
+double refine(const std::function<double(double)>& f, double a, double b, double fa, double fm, double fb, double whole,
+              double tolerance, int depth) {
     const double m = 0.5 * (a + b), fl = f(0.5 * (a + m)), fr = f(0.5 * (m + b));
     const double left = simpson(a, m, fa, fl, fm), right = simpson(m, b, fm, fr, fb);
     const double change = left + right - whole;
-    if (depth == 0 || (depth < 36 && std::abs(change) < 15.0 * tolerance))
-        return left + right + change / 15.0;
+    if (depth == 0 || (depth < 36 && std::abs(change) < 15.0 * tolerance)) return left + right + change / 15.0;
     return refine(f, a, m, fa, fl, fm, left, 0.5 * tolerance, depth - 1) +
            refine(f, m, b, fm, fr, fb, right, 0.5 * tolerance, depth - 1);
 }
@@ -51,8 +48,7 @@ double integral_over_t(double sigma_t, double r, double theta_deg, bool path_in_
     };
     double sum = 0.0;
     const double split = r * sine, nearest = r * std::sqrt(1.0 - sine * sine);
-    const double far =
-        std::sqrt(45.0 / sigma_t * (2.0 * nearest + 45.0 / sigma_t));  // s = nearest + 45 / sigma_t
+    const double far = std::sqrt(45.0 / sigma_t * (2.0 * nearest + 45.0 / sigma_t));  // s = nearest + 45 / sigma_t
     std::vector<double> ends = {0.0, 0.5 * split, split};
     for (double step = 1e-3; step <= 1.0; step *= 10.0) ends.push_back(split + far * step);
     for (std::size_t i = 1; i < ends.size(); ++i) {
@@ -70,8 +66,7 @@ const std::vector<std::size_t> spread_theta = {0, 1, 17, 50, 83, 97, 98, 99};
 // Expected values: worked by hand in the model's specification, to their printed digits.
 TEST_CASE("power functions take their worked values", "[power_tables]") {
     const double sigma_s = 1.31, sigma_a = 0.0041, sigma_t = sigma_s + sigma_a;
-    const RefractionAngle normal = RefractionAngle::from_degrees(0.0),
-                          oblique = RefractionAngle::from_degrees(30.0);
+    const RefractionAngle normal = RefractionAngle::from_degrees(0.0), oblique = RefractionAngle::from_degrees(30.0);
     CHECK(fluorescence_power(sigma_t, 0.0, normal) == Approx(0.76098).margin(0.5e-5));
     CHECK(fluorescence_power(sigma_t, 1.0, oblique) == Approx(0.56622).margin(0.5e-5));
     CHECK(single_power(sigma_s, sigma_t, 1.0, oblique) == Approx(0.020859).margin(0.5e-6));
@@ -88,8 +83,7 @@ TEST_CASE("fluorescence and single scattering agree with adaptive Simpson of eq.
     for (std::size_t r : spread_r)
         for (std::size_t theta : spread_theta)
             for (std::size_t lambda : {0, 40, 55, 99}) {
-                const double r_mm = 0.1 * static_cast<double>(r),
-                             theta_deg = 0.9 * static_cast<double>(theta);
+                const double r_mm = 0.1 * static_cast<double>(r), theta_deg = 0.9 * static_cast<double>(theta);
                 const double sigma_s = fluorescence.medium.sigma_s[lambda];
                 const double sigma_t = sigma_s + fluorescence.medium.sigma_a[lambda];
                 const double nearest = r_mm * std::cos(theta_deg * pi / 180.0);  // smallest s(t)
@@ -112,13 +106,11 @@ TEST_CASE("thin and dense media agree with adaptive Simpson too", "[power_tables
                 const double nearest = r_mm * std::cos(theta_deg * pi / 180.0);
                 CAPTURE(r_mm, theta_deg, sigma_t);
                 CHECK(fluorescence_power(sigma_t, r_mm, theta) ==
-                      Approx(integral_over_t(sigma_t, r_mm, theta_deg, false, nearest) *
-                             std::exp(-sigma_t * nearest))
+                      Approx(integral_over_t(sigma_t, r_mm, theta_deg, false, nearest) * std::exp(-sigma_t * nearest))
                           .epsilon(1e-6));
-                CHECK(
-                    single_power(4.0 * pi, sigma_t, r_mm, theta) ==
-                    Approx(integral_over_t(sigma_t, r_mm, theta_deg, true, r_mm) * std::exp(-sigma_t * r_mm))
-                        .epsilon(1e-6));
+                CHECK(single_power(4.0 * pi, sigma_t, r_mm, theta) ==
+                      Approx(integral_over_t(sigma_t, r_mm, theta_deg, true, r_mm) * std::exp(-sigma_t * r_mm))
+                          .epsilon(1e-6));
             }
 }
 
@@ -155,11 +147,9 @@ TEST_CASE("multiple scattering is the dipole of eq. 5 as printed", "[power_table
                 const long double sigma_t = table.medium.sigma_s[lambda] + sigma_a, r_mm = 0.1L * r;
                 const long double d = 1.0L / (3.0L * sigma_t), sigma_tr = std::sqrt(3.0L * sigma_a * sigma_t);
                 const long double z_r = 1.0L / sigma_t, z_v = z_r + 4.0L * boundary * d;
-                const long double d_r = std::sqrt(r_mm * r_mm + z_r * z_r),
-                                  d_v = std::sqrt(r_mm * r_mm + z_v * z_v);
+                const long double d_r = std::sqrt(r_mm * r_mm + z_r * z_r), d_v = std::sqrt(r_mm * r_mm + z_v * z_v);
                 const long double expected =
-                    (std::exp(-sigma_tr * d_r) / d_r - std::exp(-sigma_tr * d_v) / d_v) /
-                    (4.0L * std::acos(-1.0L) * d);
+                    (std::exp(-sigma_tr * d_r) / d_r - std::exp(-sigma_tr * d_v) / d_v) / (4.0L * std::acos(-1.0L) * d);
                 CHECK(table.values[r * 100 + lambda] == Approx(static_cast<double>(expected)).epsilon(1e-10));
             }
     }
@@ -177,8 +167,7 @@ TEST_CASE("without absorption the dipole is the difference of two inverse distan
 TEST_CASE("the exponential integral is exact on both sides of its switch", "[power_tables]") {
     CHECK(exponential_integral_2(0.0) == 1.0);
     CHECK(exponential_integral_2(1.0) == Approx(std::exp(-1.0) - 0.219383934395520).epsilon(1e-13));
-    CHECK(exponential_integral_2(std::nextafter(1.0, 0.0)) ==
-          Approx(exponential_integral_2(1.0)).epsilon(1e-13));
+    CHECK(exponential_integral_2(std::nextafter(1.0, 0.0)) == Approx(exponential_integral_2(1.0)).epsilon(1e-13));
     CHECK(exponential_integral_2(0.5) == Approx(std::exp(-0.5) + 0.5 * std::expint(-0.5)).epsilon(1e-13));
     CHECK(exponential_integral_2(500.0) == Approx(std::exp(-500.0) / 502.0).epsilon(1e-5));
 }

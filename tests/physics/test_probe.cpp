@@ -68,9 +68,7 @@ void check_near(const Measured& measured, double expected, double tolerance = 0.
     CHECK(std::abs(measured.value - expected) <= errors * measured.standard_error + tolerance);
 }
 
-double cosine_of(double angle_deg) {
-    return std::cos(angle_deg * pi / 180.0);
-}
+double cosine_of(double angle_deg) { return std::cos(angle_deg * pi / 180.0); }
 
 // Specular reflectance, and the share of the light within that leaves after one collision and ever.
 struct Exact {
@@ -184,8 +182,7 @@ TEST_CASE("the probe measures the reflectance below a refracting surface", "[pro
 TEST_CASE("a medium without loss gives back all light", "[probe]") {
     for (const double eta : {1.0, 1.5}) {
         CAPTURE(eta);
-        const ProbeResult result =
-            measured(medium_of(1.0, 1.0, eta), settings_of(Transport::conserving, 30.0, 300000));
+        const ProbeResult result = measured(medium_of(1.0, 1.0, eta), settings_of(Transport::conserving, 30.0, 300000));
         check_near(result.totals[probe_total], 1.0);
     }
 }
@@ -226,8 +223,7 @@ namespace {
 // an oblique angle holds the skew too: the sum of squared differences over their variances. Variances come
 // from at least 32 batches, so that a square has the mean 31/29 at most. Bins that hardly any light reaches
 // are left out.
-void check_radial(const ProbeMaterial& material, double angle_deg, std::int64_t photons,
-                  std::size_t comparisons) {
+void check_radial(const ProbeMaterial& material, double angle_deg, std::int64_t photons, std::size_t comparisons) {
     ProbeSettings settings = settings_of(Transport::conserving, angle_deg, photons);
     settings.bins = 24;
     const ProbeResult tables = measured(material, settings);
@@ -264,8 +260,7 @@ TEST_CASE("tables and walks send light back at the same distances", "[probe]") {
 TEST_CASE("tables and walks send light back at the same distances, to half a per cent", "[.long]") {
     for (const double angle_deg : {0.0, 60.0})
         for (const double eta : {1.0, 1.5})
-            for (const double albedo : {0.8, 0.99})
-                check_radial(dyed_medium(albedo, eta), angle_deg, 2000000, 24);
+            for (const double albedo : {0.8, 0.99}) check_radial(dyed_medium(albedo, eta), angle_deg, 2000000, 24);
 }
 
 namespace {
@@ -286,14 +281,12 @@ std::vector<double> escape_by_collisions(double mu, std::size_t count) {
         for (int panel = 0; panel < 8; ++panel)
             for (std::size_t i = 0; i < rule.node.size(); ++i) {
                 const double t = 0.5 * pi * (panel + rule.node[i]) / 8.0, k = std::tan(t), c = std::cos(t);
-                const std::complex<double> value =
-                    std::log(1.0 - a * (t / k)) / (c * c + mu * mu * k * k * c * c);
+                const std::complex<double> value = std::log(1.0 - a * (t / k)) / (c * c + mu * mu * k * k * c * c);
                 integral += 0.5 * pi / 8.0 * rule.weight[i] * value;
             }
         const std::complex<double> reflected = 1.0 - std::sqrt(1.0 - a) * std::exp(-mu / pi * integral);
         for (std::size_t n = 1; n <= count; ++n)
-            result[n - 1] +=
-                (reflected * std::polar(std::pow(radius, -double(n)), -angle * double(n))).real() / points;
+            result[n - 1] += (reflected * std::polar(std::pow(radius, -double(n)), -angle * double(n))).real() / points;
     }
     return result;
 }
@@ -327,8 +320,8 @@ TEST_CASE("light that is taken up again and again is weighted right", "[probe]")
     const double emission = dot.emission.sum_1nm(300, 830);
     const auto uptake = [&](std::size_t i) { return 0.7 * dot.excitation.at(result.lambda_nm[i]); };
     std::vector<double> light(count, 0.0), leaving(count, 0.0);
-    const auto ex = static_cast<std::size_t>(
-        std::find(result.lambda_nm.begin(), result.lambda_nm.end(), 365) - result.lambda_nm.begin());
+    const auto ex = static_cast<std::size_t>(std::find(result.lambda_nm.begin(), result.lambda_nm.end(), 365) -
+                                             result.lambda_nm.begin());
     light[ex] = 1.0;
     for (const double escape : escape_by_collisions(1.0, 300)) {
         std::vector<double> next(count, 0.0);
@@ -424,8 +417,7 @@ TEST_CASE("a probe's sums agree", "[probe]") {
                 if (result.lambda_nm[i] < 372) CHECK(value == 0.0);
                 if (result.lambda_nm[i] == 372)
                     CHECK((value > 0.0) == (!fluorescent && result.totals[component].value > 0.0));
-                if (result.lambda_nm[i] > 372 && !fluorescent && component != probe_total)
-                    CHECK(value == 0.0);
+                if (result.lambda_nm[i] > 372 && !fluorescent && component != probe_total) CHECK(value == 0.0);
                 total += value * (result.lambda_nm[i] == 372 ? 1.0 : 5.0);
             }
             for (std::size_t bin = 0; bin < 12; ++bin)
@@ -443,8 +435,7 @@ TEST_CASE("a probe's sums agree", "[probe]") {
 }
 
 TEST_CASE("the probe refuses what it cannot measure", "[probe]") {
-    const auto complaint = [](const ProbeMaterial& material, const ProbeSettings& settings,
-                              int lambda_ex_nm = 365) {
+    const auto complaint = [](const ProbeMaterial& material, const ProbeSettings& settings, int lambda_ex_nm = 365) {
         return input_error([&] { measured(material, settings, lambda_ex_nm); });
     };
     const ProbeMaterial good = medium_of(1.0, 0.9);
@@ -452,8 +443,7 @@ TEST_CASE("the probe refuses what it cannot measure", "[probe]") {
     settings.photons = 64;
     CHECK(complaint(good, settings) == "");
     CHECK_THAT(complaint(ProbeMaterial{}, settings), Contains("a medium, a fluorophore or both"));
-    CHECK_THAT(complaint(good, settings, 299),
-               Contains("an excitation wavelength in [300, 830] nm, got 299"));
+    CHECK_THAT(complaint(good, settings, 299), Contains("an excitation wavelength in [300, 830] nm, got 299"));
     for (const double angle : {-1.0, 90.0, std::nan("")}) {
         ProbeSettings bad = settings;
         bad.angle_deg = angle;

@@ -42,8 +42,7 @@ Scene plane_scene(const Spectrum& irradiance) {
 
 // K F(lambda) / pi of eq. 1-2 at each wavelength of the set, sums over the other members with (N-1)/(n-1);
 // strictly above the excitation only.
-std::array<double, 16> emitted_radiance(const Scene& scene, const WavelengthSet& set,
-                                        const Spectrum& irradiance) {
+std::array<double, 16> emitted_radiance(const Scene& scene, const WavelengthSet& set, const Spectrum& irradiance) {
     const Fluorophore& dot = scene.fluorophores[0];
     const double pair_weight = double(scene.render.lambda_max_nm - scene.render.lambda_min_nm) / 15.0;
     std::array<double, 16> radiance{};
@@ -60,14 +59,13 @@ std::array<std::array<double, 16>, STOKES_MAP_COUNT> deposited(const Scene& scen
     const Device& device = test_device();
     const DeviceScene on_device(device, scene);
     const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-    const PassSpectra spectra = make_pass_spectra(scene, on_device.light_probability,
-                                                  on_device.light_surface_area_mm2, pass, photons);
+    const PassSpectra spectra =
+        make_pass_spectra(scene, on_device.light_probability, on_device.light_surface_area_mm2, pass, photons);
     PassConstants constants = spectra.constants;
     constants.offset_mm = on_device.offset_mm;
-    const PassBuffers buffers{Buffer<PassConstants>(device, "constants", {constants}),
-                              Buffer<Flux16>(device, "rows", spectra.rows),
-                              Buffer<Flux16>(device, "flux", spectra.photon_flux),
-                              Buffer<Flux16>(device, "radiance", spectra.radiance)};
+    const PassBuffers buffers{
+        Buffer<PassConstants>(device, "constants", {constants}), Buffer<Flux16>(device, "rows", spectra.rows),
+        Buffer<Flux16>(device, "flux", spectra.photon_flux), Buffer<Flux16>(device, "radiance", spectra.radiance)};
     const Buffer<float> lambda(device, "lambda", 16);
     lambda.upload(constants.lambda_nm, 16);
     const DeviceTables& tables = on_device.tables;
@@ -75,8 +73,8 @@ std::array<std::array<double, 16>, STOKES_MAP_COUNT> deposited(const Scene& scen
         Program(device, "resample_tables.cl")
             .kernel("resample_table")
             .launch(tables.entries, tables.values, static_cast<std::uint32_t>(tables.wavelengths.count),
-                    static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step),
-                    lambda, tables.at_wavelengths, tables.entries);
+                    static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step), lambda,
+                    tables.at_wavelengths, tables.entries);
     PhotonTracer tracer(device, on_device.rays.kernels, photons);
     PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
                     PhotonMap(device, "surface", 16)};
@@ -178,8 +176,7 @@ TEST_CASE("a wide picture of a slab holds all the light that leaves it", "[fluor
         for (std::size_t m = 0; m < STOKES_MAP_COUNT; ++m) {
             CAPTURE(m);
             const glm::dvec3 expected = film_xyz(scene, set, [&](std::size_t i) { return sums[m][i]; });
-            const glm::dvec3 seen =
-                mean_xyz(image, static_cast<Component>(m)) * M_PI * edge_mm * edge_mm * 1e-6;
+            const glm::dvec3 seen = mean_xyz(image, static_cast<Component>(m)) * M_PI * edge_mm * edge_mm * 1e-6;
             for (int c = 0; c < 3; ++c) {
                 CAPTURE(c);
                 if (m == STOKES_MAP_SURFACE)

@@ -141,8 +141,7 @@ TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[
     PassImages images(renderer);
     Sample ratio;
     for (std::uint32_t pass = 0; pass < 8; ++pass)
-        ratio.add(mean_xyz(images.next(pass), Component::surface).y /
-                  film_xyz(scene, pass, Spectrum::constant(2.0)).y);
+        ratio.add(mean_xyz(images.next(pass), Component::surface).y / film_xyz(scene, pass, Spectrum::constant(2.0)).y);
     CAPTURE(ratio.mean(), ratio.standard_error());
     CHECK(ratio.mean() == Approx(1.0).epsilon(0.01));
     CHECK(std::abs(renderer.book().ledger().power.imbalance()) < 1e-4);

@@ -128,10 +128,8 @@ TEST_CASE("what leaves a slab of two media is what leaves a slab of the first, b
                                     two = stored_light(two_tiles(transport, 1));
         for (std::size_t m = 0; m < 3; ++m) {
             REQUIRE(one[m].heads.size() == two[m].heads.size());
-            CHECK(std::memcmp(one[m].heads.data(), two[m].heads.data(),
-                              one[m].heads.size() * sizeof(PhotonHead)) == 0);
-            CHECK(std::memcmp(one[m].flux.data(), two[m].flux.data(), one[m].flux.size() * sizeof(Flux16)) ==
-                  0);
+            CHECK(std::memcmp(one[m].heads.data(), two[m].heads.data(), one[m].heads.size() * sizeof(PhotonHead)) == 0);
+            CHECK(std::memcmp(one[m].flux.data(), two[m].flux.data(), one[m].flux.size() * sizeof(Flux16)) == 0);
         }
     }
 }

@@ -5,7 +5,8 @@ using namespace stokes;
 
 namespace {
 
-void check_half_space(const Material16& m, double mu, std::uint32_t batches, std::uint32_t photons, double largest_error) {
+void check_half_space(const Material16& m, double mu, std::uint32_t batches, std::uint32_t photons,
+                      double largest_error) {
     CAPTURE(m.eta, m.fresnel, mu);
     const Measured r = measure(beam_scene(m, wide_sheet(), mu), batches, photons);
     CHECK(r.imbalance < 1e-5);
@@ -73,8 +74,8 @@ TEST_CASE("reflectances to 5e-4", "[.long]") {
 // Nearly without loss light gets thousands of mean free paths deep.
 TEST_CASE("weak absorption, and none, in a half-space", "[walk]") {
     Material16 m;
-    m.albedo = {0.99,   0.995,   0.998,   0.999,    0.9995,  0.9998, 0.9999, 0.99995,
-                0.99998, 0.99999, 0.999995, 0.999999, 0.9999995, 1.0,  1.0,    1.0};
+    m.albedo = {0.99,    0.995,   0.998,    0.999,    0.9995,    0.9998, 0.9999, 0.99995,
+                0.99998, 0.99999, 0.999995, 0.999999, 0.9999995, 1.0,    1.0,    1.0};
     check_half_space(m, 1.0, 1, 1u << 17, 1.1e-3);
     m.eta = 1.5;
     m.fresnel = true;

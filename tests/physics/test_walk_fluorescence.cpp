@@ -44,8 +44,9 @@ TEST_CASE("fluorescence of the first collision leaves as exact transport says", 
         for (std::size_t em = 0; em < wavelengths; ++em) {
             double expected = 0.0;
             for (std::size_t ex = 0; ex < std::min(em, std::size_t{3}); ++ex)
-                expected += entering * conversion(scene, ex, em) *
-                            escaping_share(fresnel ? 1.5 : 1.0, within, m.albedo[em], m.sigma_t[em] / m.sigma_t[ex]).total;
+                expected +=
+                    entering * conversion(scene, ex, em) *
+                    escaping_share(fresnel ? 1.5 : 1.0, within, m.albedo[em], m.sigma_t[em] / m.sigma_t[ex]).total;
             CAPTURE(em, fresnel, expected);
             check_mean(r.map[STOKES_MAP_FLUORESCENCE][em], expected, 0.03 * expected + 1e-9);
             const Reflected without = exact(m, em, mu);
@@ -57,11 +58,11 @@ TEST_CASE("fluorescence of the first collision leaves as exact transport says", 
     }
 }
 
-// With one extinction coefficient, light that scatters with albedo a reflects R(a) = a X(a), X(a) = <s, (1 - a K)^-1 u>,
-// s the first collisions, K from emission to the next collision, u the direct escape. Light taken up at any collision is
-// re-emitted and scatters with another albedo b: <s, (1 - a K)^-1 (1 - b K)^-1 u> = (R(a) - R(b))/(a - b); where that
-// light is taken up again, at its collisions, and re-emitted to scatter with albedo d:
-// <s, (1 - a K)^-1 (1 - b K)^-1 K (1 - d K)^-1 u> = R(a)/((a - b)(a - d)) + R(b)/((b - a)(b - d)) + R(d)/((d - a)(d - b)).
+// With one extinction coefficient, light that scatters with albedo a reflects R(a) = a X(a), X(a) = <s, (1 - a K)^-1
+// u>, s the first collisions, K from emission to the next collision, u the direct escape. Light taken up at any
+// collision is re-emitted and scatters with another albedo b: <s, (1 - a K)^-1 (1 - b K)^-1 u> = (R(a) - R(b))/(a - b);
+// where that light is taken up again, at its collisions, and re-emitted to scatter with albedo d: <s, (1 - a K)^-1 (1 -
+// b K)^-1 K (1 - d K)^-1 u> = R(a)/((a - b)(a - d)) + R(b)/((b - a)(b - d)) + R(d)/((d - a)(d - b)).
 TEST_CASE("fluorescence at every collision, re-absorption included, is exact", "[walk]") {
     Material16 m = fluorescent();
     m.first_collision_only = false;
@@ -81,13 +82,13 @@ TEST_CASE("fluorescence at every collision, re-absorption included, is exact", "
         double expected = 0.0;
         if (em == 1) expected = conversion(scene, 0, 1) * (r0 - rb) / (a0 - b);
         if (em >= 2) {
-            expected = conversion(scene, 0, em) * (r0 - rb) / (a0 - b) + conversion(scene, 1, em) * (r1 - rb) / (a1 - b);
+            expected =
+                conversion(scene, 0, em) * (r0 - rb) / (a0 - b) + conversion(scene, 1, em) * (r1 - rb) / (a1 - b);
             const double twice = r0 / ((a0 - a1) * (a0 - b)) + r1 / ((a1 - a0) * (a1 - b)) + rb / ((b - a0) * (b - a1));
             expected += conversion(scene, 0, 1) * conversion(scene, 1, em) * pass.chain[1] * twice;
         }
         CAPTURE(em);
         check_mean(r.map[STOKES_MAP_FLUORESCENCE][em], expected, 0.03 * expected + 1e-9);
-        CHECK(r.total[em].mean() - r.map[STOKES_MAP_FLUORESCENCE][em].mean() ==
-              Approx(specular + rb).margin(5e-3));
+        CHECK(r.total[em].mean() - r.map[STOKES_MAP_FLUORESCENCE][em].mean() == Approx(specular + rb).margin(5e-3));
     }
 }

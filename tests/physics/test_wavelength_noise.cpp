@@ -38,8 +38,7 @@ Layers measured(Scene scene, Wavelengths wavelengths) {
 }
 
 void compare(const Scene& scene) {
-    const Layers uniform = measured(scene, Wavelengths::uniform),
-                 importance = measured(scene, Wavelengths::importance);
+    const Layers uniform = measured(scene, Wavelengths::uniform), importance = measured(scene, Wavelengths::importance);
     for (std::size_t c = 0; c < component_count; ++c)
         for (std::size_t k = 0; k < 3; ++k) {
             const Sample &u = uniform[c][k], &i = importance[c][k];

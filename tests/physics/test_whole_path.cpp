@@ -22,11 +22,10 @@ std::vector<double> blocks_of(const FilmImage& image) {
     for (std::size_t c = 0; c < component_count; ++c)
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x) {
-                const auto block = c * static_cast<std::size_t>(columns * rows) +
-                                   static_cast<std::size_t>(y / 8 * columns + x / 8);
+                const auto block =
+                    c * static_cast<std::size_t>(columns * rows) + static_cast<std::size_t>(y / 8 * columns + x / 8);
                 blocks[block] +=
-                    static_cast<double>(image.xyz[c][static_cast<std::size_t>(y * image.width + x) * 3 + 1]) /
-                    64.0;
+                    static_cast<double>(image.xyz[c][static_cast<std::size_t>(y * image.width + x) * 3 + 1]) / 64.0;
             }
     return blocks;
 }
@@ -86,8 +85,7 @@ TEST_CASE("whole renders account for all light and all photons", "[whole_path]")
         CHECK(std::abs(ledger.roulette) < 5.0 * ledger.emitted / std::sqrt(static_cast<double>(photons)));
         const FilmImage image = renderer.image();
         CHECK(count_non_finite(image) == 0);
-        for (const Component c :
-             {Component::fluorescence, Component::single, Component::multiple, Component::surface})
+        for (const Component c : {Component::fluorescence, Component::single, Component::multiple, Component::surface})
             CHECK(mean_xyz(image, c).y > 0.0);
     }
 }

@@ -51,7 +51,7 @@ struct Material16 {
     Sixteen albedo = all(1.0);
     double eta = 1.0;
     bool fresnel = false;
-    double fraction = 0.0;        // of the fluorophore
+    double fraction = 0.0;  // of the fluorophore
     Sixteen excitation = all(0.0), emission = all(0.0);
     bool first_collision_only = true;
 };
@@ -117,7 +117,7 @@ inline Mesh wide_sheet() {
 struct Measured {
     std::array<std::array<Sample, wavelengths>, 3> map;
     std::array<Sample, wavelengths> total;  // with the specular reflection
-    double absorbed = 0.0, dropped = 0.0;  // shares of the emitted energy
+    double absorbed = 0.0, dropped = 0.0;   // shares of the emitted energy
     double missed = 0.0;                    // deposits a photon
     double imbalance = 0.0;                 // worst
 };
@@ -151,13 +151,15 @@ inline Measured measure(const Scene& scene, std::uint32_t batches, std::uint32_t
         result.dropped += share(4);
         result.missed += static_cast<double>(account.missed_exits) / (double(photons) * batches);
         for (const auto& sums : {account.energy, account.photons})
-            result.imbalance = std::max(result.imbalance, std::abs(sums[0] + sums[6] - sums[1] - sums[2] - sums[3] -
-                                                                   sums[4] - sums[5]) / sums[0]);
+            result.imbalance =
+                std::max(result.imbalance,
+                         std::abs(sums[0] + sums[6] - sums[1] - sums[2] - sums[3] - sums[4] - sums[5]) / sums[0]);
     }
     return result;
 }
 
-// Three standard errors. Comparisons at different wavelengths of one run are hardly independent: the walks are the same.
+// Three standard errors. Comparisons at different wavelengths of one run are hardly independent: the walks are the
+// same.
 inline void check_mean(const Sample& sample, double expected, double largest_error) {
     CAPTURE(sample.mean(), expected, sample.standard_error(), sample.z(expected));
     CHECK(std::abs(sample.mean() - expected) <= 3.0 * sample.standard_error() + 1e-5);
@@ -177,7 +179,7 @@ inline Reflected exact(const Material16& m, std::size_t k, double mu) {
     return {specular, scattered * share.direct, specular + scattered * share.total};
 }
 
-inline const Sixteen many_albedos = {0.0,  0.1,  0.2,  0.3,  0.4,  0.5,  0.6,  0.7,
-                                     0.75, 0.8,  0.85, 0.9,  0.93, 0.95, 0.97, 0.99};
+inline const Sixteen many_albedos = {0.0,  0.1, 0.2,  0.3, 0.4,  0.5,  0.6,  0.7,
+                                     0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.99};
 
 }  // namespace stokes

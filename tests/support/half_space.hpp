@@ -28,9 +28,9 @@ struct FirstCollision {
     }
 };
 
-// Share of the light that first collisions send on isotropically which leaves at once, and which ever leaves. It arrives
-// within the medium at cosine mu; ratio: sigma_t of the light sent on over that of the light that arrives; albedo: of
-// the former. eta: of the boundary.
+// Share of the light that first collisions send on isotropically which leaves at once, and which ever leaves. It
+// arrives within the medium at cosine mu; ratio: sigma_t of the light sent on over that of the light that arrives;
+// albedo: of the former. eta: of the boundary.
 struct Escaping {
     double direct = 0.0, total = 0.0;
 };
@@ -55,8 +55,6 @@ inline Escaping escaping_share(double eta, double mu, double albedo, double rati
 }
 
 // Cosine below the surface of light that arrives at cosine mu.
-inline double cosine_within(double eta, double mu) {
-    return std::sqrt(1.0 - (1.0 - mu * mu) / (eta * eta));
-}
+inline double cosine_within(double eta, double mu) { return std::sqrt(1.0 - (1.0 - mu * mu) / (eta * eta)); }
 
 }  // namespace stokes

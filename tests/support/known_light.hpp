@@ -94,8 +94,7 @@ inline glm::dvec3 film_xyz(const Scene& scene, std::uint32_t pass, const Spectru
 inline glm::dvec3 mean_xyz(const FilmImage& image, Component component) {
     const std::vector<float>& xyz = image.xyz[static_cast<std::size_t>(component)];
     glm::dvec3 sum(0.0);
-    for (std::size_t i = 0; i < image.pixels(); ++i)
-        sum += glm::dvec3(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+    for (std::size_t i = 0; i < image.pixels(); ++i) sum += glm::dvec3(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
     return sum / static_cast<double>(image.pixels());
 }
 
@@ -128,8 +127,7 @@ class PassImages {
 // Student's t with that many degrees of freedom as the normal deviate of the same significance (Wallace
 // 1959).
 inline double normal_of_t(double t, double freedom) {
-    const double z =
-        std::sqrt(freedom * std::log1p(t * t / freedom)) * (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
+    const double z = std::sqrt(freedom * std::log1p(t * t / freedom)) * (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
     return std::copysign(z, t);
 }
 

@@ -21,12 +21,9 @@ Buffer<T> on_device(const std::vector<T>& data) {
 }
 
 // Of the pass [nm].
-inline float test_wavelength(std::size_t i) {
-    return 310.0f + 30.0f * static_cast<float>(i);
-}
+inline float test_wavelength(std::size_t i) { return 310.0f + 30.0f * static_cast<float>(i); }
 
-inline Buffer<PassConstants> pass_on_device(std::uint32_t seed, std::uint32_t photons = 0,
-                                            float offset_mm = 0.0f) {
+inline Buffer<PassConstants> pass_on_device(std::uint32_t seed, std::uint32_t photons = 0, float offset_mm = 0.0f) {
     PassConstants constants{};
     constants.seed = seed;
     constants.pass = 2;
@@ -68,16 +65,10 @@ inline LightSum light_of(const Flux16& flux) {
     return {static_cast<float>(sum_of(flux)), static_cast<float>(photons)};
 }
 
-inline bool same_bits(const Flux16& a, const Flux16& b) {
-    return std::memcmp(a.v, b.v, sizeof(a.v)) == 0;
-}
+inline bool same_bits(const Flux16& a, const Flux16& b) { return std::memcmp(a.v, b.v, sizeof(a.v)) == 0; }
 
-inline glm::dvec3 origin_of(const Ray& ray) {
-    return {ray.ox, ray.oy, ray.oz};
-}
-inline glm::dvec3 direction_of(const Ray& ray) {
-    return {ray.dx, ray.dy, ray.dz};
-}
+inline glm::dvec3 origin_of(const Ray& ray) { return {ray.ox, ray.oy, ray.oz}; }
+inline glm::dvec3 direction_of(const Ray& ray) { return {ray.dx, ray.dy, ray.dz}; }
 
 // The account of a path that has just started with this flux.
 inline PathLedger open_ledger(const Flux16& flux) {
@@ -116,8 +107,8 @@ inline double worst_imbalance(const std::vector<PathLedger>& ledgers, const std:
 }
 
 // A triangle by its corners; the normal is (b - a) x (c - a).
-inline Triangle make_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
-                              std::uint32_t shape = 0, std::uint32_t body = 0) {
+inline Triangle make_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t shape = 0,
+                              std::uint32_t body = 0) {
     const glm::vec3 e1 = b - a, e2 = c - a;
     return {a.x, a.y, a.z, shape, e1.x, e1.y, e1.z, body, e2.x, e2.y, e2.z, 0};
 }
@@ -127,8 +118,7 @@ inline glm::dvec3 normal_of(const Triangle& t) {
 }
 
 inline glm::dvec3 point_on(const Triangle& t, double u, double v) {
-    return glm::dvec3(t.v0x, t.v0y, t.v0z) + u * glm::dvec3(t.e1x, t.e1y, t.e1z) +
-           v * glm::dvec3(t.e2x, t.e2y, t.e2z);
+    return glm::dvec3(t.v0x, t.v0y, t.v0z) + u * glm::dvec3(t.e1x, t.e1y, t.e1z) + v * glm::dvec3(t.e2x, t.e2y, t.e2z);
 }
 
 // Two unit vectors at right angles to n and to each other, by another construction than the kernels'.
@@ -153,8 +143,7 @@ inline double azimuth_about(const glm::dvec3& n, const glm::dvec3& d) {
 // uniform.
 class CosineHistogram {
   public:
-    explicit CosineHistogram(int steps)
-        : steps_(steps), counts_(std::size_t(steps) * std::size_t(steps), 0.0) {}
+    explicit CosineHistogram(int steps) : steps_(steps), counts_(std::size_t(steps) * std::size_t(steps), 0.0) {}
     void add(const glm::dvec3& n, const glm::dvec3& d) {
         const double mu = glm::dot(n, d);
         const int row = std::min(int(mu * mu * steps_), steps_ - 1);

@@ -23,8 +23,7 @@ struct PngKind {
 inline std::string png_bytes(int width, const std::vector<std::string>& rows, const PngKind& kind = {}) {
     std::string bytes;
     png_structp png = png_create_write_struct(
-        PNG_LIBPNG_VER_STRING, nullptr,
-        [](png_structp, png_const_charp text) { throw std::runtime_error(text); },
+        PNG_LIBPNG_VER_STRING, nullptr, [](png_structp, png_const_charp text) { throw std::runtime_error(text); },
         [](png_structp, png_const_charp) {});
     png_infop info = png_create_info_struct(png);
     png_set_write_fn(
@@ -33,18 +32,14 @@ inline std::string png_bytes(int width, const std::vector<std::string>& rows, co
             static_cast<std::string*>(png_get_io_ptr(at))->append(reinterpret_cast<char*>(data), count);
         },
         [](png_structp) {});
-    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(rows.size()),
-                 kind.bit_depth, kind.color_type, kind.interlace, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
-    if (!kind.palette.empty())
-        png_set_PLTE(png, info, kind.palette.data(), static_cast<int>(kind.palette.size()));
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(rows.size()), kind.bit_depth,
+                 kind.color_type, kind.interlace, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (!kind.palette.empty()) png_set_PLTE(png, info, kind.palette.data(), static_cast<int>(kind.palette.size()));
     if (!kind.palette_alpha.empty())
-        png_set_tRNS(png, info, kind.palette_alpha.data(), static_cast<int>(kind.palette_alpha.size()),
-                     nullptr);
+        png_set_tRNS(png, info, kind.palette_alpha.data(), static_cast<int>(kind.palette_alpha.size()), nullptr);
     png_write_info(png, info);
     std::vector<png_bytep> pointers;
-    for (const std::string& row : rows)
-        pointers.push_back(reinterpret_cast<png_bytep>(const_cast<char*>(row.data())));
+    for (const std::string& row : rows) pointers.push_back(reinterpret_cast<png_bytep>(const_cast<char*>(row.data())));
     png_write_image(png, pointers.data());
     png_write_end(png, nullptr);
     png_destroy_write_struct(&png, &info);

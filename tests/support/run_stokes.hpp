@@ -18,11 +18,11 @@ struct Outcome {
 // environment: assignments such as "HOME=/nowhere", before the program's name.
 inline Outcome run_stokes(const std::string& arguments, const std::string& environment = "") {
     const TemporaryFolder folder;
-    const std::string command = environment + " " + STOKES_BINARY + " " + arguments + " > " +
-                                folder.file("out") + " 2> " + folder.file("err") + " < /dev/null";
+    const std::string command = environment + " " + STOKES_BINARY + " " + arguments + " > " + folder.file("out") +
+                                " 2> " + folder.file("err") + " < /dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            file_content(folder.file("out")), file_content(folder.file("err"))};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), file_content(folder.file("out")),
+            file_content(folder.file("err"))};
 }
 
 inline const std::string sphere_scene = std::string(STOKES_SOURCE_DIR) + "/scenes/sphere.json";

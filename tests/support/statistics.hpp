@@ -43,9 +43,7 @@ inline double chi_square_tail(double value, double freedom) {
 }
 
 // Probability that a standard normal variable lies further from 0 than z.
-inline double normal_two_sided(double z) {
-    return std::erfc(std::abs(z) / std::sqrt(2.0));
-}
+inline double normal_two_sided(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
 // p-value of Pearson's test of counts against expected counts. Neighbouring cells are merged until each
 // expects at least 5; constraints: degrees of freedom lost, 1 for a fixed total. NaN when fewer than two
@@ -69,8 +67,7 @@ inline double chi_square_p_value(const std::vector<double>& observed, const std:
     }
     if (means.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     double sum = 0.0;
-    for (std::size_t i = 0; i < means.size(); ++i)
-        sum += (counts[i] - means[i]) * (counts[i] - means[i]) / means[i];
+    for (std::size_t i = 0; i < means.size(); ++i) sum += (counts[i] - means[i]) * (counts[i] - means[i]) / means[i];
     return chi_square_tail(sum, static_cast<double>(means.size()) - constraints);
 }
 
@@ -78,8 +75,8 @@ inline double chi_square_p_value(const std::vector<double>& observed, const std:
 inline double chi_square_uniform(const std::vector<double>& observed) {
     double total = 0.0;
     for (const double count : observed) total += count;
-    return chi_square_p_value(
-        observed, std::vector<double>(observed.size(), total / static_cast<double>(observed.size())));
+    return chi_square_p_value(observed,
+                              std::vector<double>(observed.size(), total / static_cast<double>(observed.size())));
 }
 
 // Mean and spread of a stream of numbers (Welford 1962).

@@ -83,16 +83,13 @@ struct MadeUpTables {
             return at - lower;
         };
         unsigned row = 0, r = 0;
-        const double row_share =
-            place(row_deg, double(shape.row_first), double(shape.row_step), shape.row_count, row);
+        const double row_share = place(row_deg, double(shape.row_first), double(shape.row_step), shape.row_count, row);
         const double r_share = place(r_mm, double(shape.r_first), double(shape.r_step), shape.r_count, r);
         std::array<double, 16> result{};
         for (unsigned i = 0; i < 2; ++i)
             for (unsigned j = 0; j < 2; ++j) {
-                const unsigned a = std::min(row + i, shape.row_count - 1),
-                               b = std::min(r + j, shape.r_count - 1);
-                const double share =
-                    (i == 1 ? row_share : 1.0 - row_share) * (j == 1 ? r_share : 1.0 - r_share);
+                const unsigned a = std::min(row + i, shape.row_count - 1), b = std::min(r + j, shape.r_count - 1);
+                const double share = (i == 1 ? row_share : 1.0 - row_share) * (j == 1 ? r_share : 1.0 - r_share);
                 for (std::size_t k = 0; k < 16; ++k)
                     result[k] += share * double(at_wavelengths[shape.offset + a * shape.r_count + b].v[k]);
             }

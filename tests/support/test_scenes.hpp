@@ -9,8 +9,8 @@ namespace stokes {
 // camera inside. Its radiance is 1 / (1 - reflectance) in every direction.
 Scene furnace_scene(double reflectance);
 
-// A square of marble (sigma_s 1.31, sigma_a 0.0041 per mm, eta 1.5) with Qdot-like fluorophore and fluorescent fraction c,
-// facing up, 2 m wide, under a thin parallel beam at this angle from its normal, with power at all wavelengths.
+// A square of marble (sigma_s 1.31, sigma_a 0.0041 per mm, eta 1.5) with Qdot-like fluorophore and fluorescent fraction
+// c, facing up, 2 m wide, under a thin parallel beam at this angle from its normal, with power at all wavelengths.
 Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transport = Transport::paper);
 
 // A small closed world: a translucent sphere over a diffuse floor under a disk lamp.

@@ -10,10 +10,10 @@ namespace stokes {
 
 // Of materials that have none.
 inline DeviceTextures no_textures(std::size_t materials) {
-    return {Buffer<TextureRecord>(test_device(), "textures",
-                                  std::vector<TextureRecord>(materials, {0, 0, 0, STOKES_NONE})),
-            Buffer<float>(test_device(), "texels", std::vector<float>(1, 0.0f)),
-            Buffer<TriangleUv>(test_device(), "texture coordinates", std::vector<TriangleUv>(1))};
+    return {
+        Buffer<TextureRecord>(test_device(), "textures", std::vector<TextureRecord>(materials, {0, 0, 0, STOKES_NONE})),
+        Buffer<float>(test_device(), "texels", std::vector<float>(1, 0.0f)),
+        Buffer<TriangleUv>(test_device(), "texture coordinates", std::vector<TriangleUv>(1))};
 }
 
 }  // namespace stokes

@@ -22,8 +22,7 @@ std::vector<Triangle> sphere_mesh(int rings, int segments, float radius_mm, cons
     std::vector<Triangle> triangles;
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < segments; ++j) {
-            const glm::vec3 a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1),
-                            d = vertex(i, j + 1);
+            const glm::vec3 a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1), d = vertex(i, j + 1);
             if (i + 1 < rings) triangles.push_back(make_triangle(a, b, c, body));
             if (i > 0) triangles.push_back(make_triangle(a, c, d, body));
         }
@@ -31,11 +30,8 @@ std::vector<Triangle> sphere_mesh(int rings, int segments, float radius_mm, cons
 }
 
 std::vector<Triangle> box_mesh(const glm::vec3& lo, const glm::vec3& hi, std::uint32_t body) {
-    const auto corner = [&](int i) {
-        return glm::vec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
-    };
-    const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    const auto corner = [&](int i) { return glm::vec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z); };
+    const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     std::vector<Triangle> triangles;
     for (const auto& f : faces) {
         triangles.push_back(make_triangle(corner(f[0]), corner(f[1]), corner(f[2]), body));

@@ -21,10 +21,10 @@
 // segment is left, which starts offset_mm above the surface.
 // Reads and writes hits[width * height]: the nearest intersection along those, STOKES_NONE without one and after
 // MOST_REFLECTIONS.
-__kernel void trace_seen(CameraRecord camera, __global const PassConstants* pass, __global const BvhNode* nodes,
-                         __global const BvhBlock* blocks, BvhGrid grid, __global const Triangle* triangles,
-                         __global const ShapeRecord* shapes, __global const MaterialRecord* materials,
-                         __global Ray* rays, __global Hit* hits) {
+__kernel void trace_reflections(CameraRecord camera, __global const PassConstants* pass, __global const BvhNode* nodes,
+                                __global const BvhBlock* blocks, BvhGrid grid, __global const Triangle* triangles,
+                                __global const ShapeRecord* shapes, __global const MaterialRecord* materials,
+                                __global Ray* rays, __global Hit* hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= camera.width * camera.height) return;
     const uint2 at = pixel_of_ray(i, camera.width, camera.height);

@@ -1,4 +1,4 @@
-#include "host/render/pass_numbers.hpp"
+#include "host/render/low_discrepancy.hpp"
 
 namespace stokes {
 
@@ -35,12 +35,13 @@ std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t purpose) {
     return mixed(mixed(seed + golden) + (purpose + 1) * golden);
 }
 
-std::uint32_t even_cell(std::uint64_t seed, std::uint32_t index, int bits) {
+std::uint32_t low_discrepancy_cell(std::uint64_t seed, std::uint32_t index, int bits) {
     return scrambled(reversed(index, bits), seed, bits);
 }
 
-double even_number(std::uint64_t seed, std::uint32_t index) {
-    const std::uint32_t word = even_cell(derived_seed(seed, 1), scrambled(index, derived_seed(seed, 0), 32), 32);
+double low_discrepancy_number(std::uint64_t seed, std::uint32_t index) {
+    const std::uint32_t word =
+        low_discrepancy_cell(derived_seed(seed, 1), scrambled(index, derived_seed(seed, 0), 32), 32);
     // The digits after those of the index.
     const std::uint64_t rest = mixed(derived_seed(seed, 2) + golden * word) >> 43;
     return static_cast<double>(std::uint64_t{word} << 21 | rest) * 0x1p-53;

@@ -91,8 +91,8 @@ class Bench {
         rays_.kernels.program(device, "trace_rays.cl")
             .kernel("trace_closest_all")
             .launch(rays.size(), camera.width, rays_.nodes, rays_.blocks, rays_.grid, ray_buffer, hits);
-        rays_.kernels.program(device, "see_surfaces.cl")
-            .kernel("trace_seen")
+        rays_.kernels.program(device, "trace_reflections.cl")
+            .kernel("trace_reflections")
             .launch(rays.size(), camera, pass_buffer, rays_.nodes, rays_.blocks, rays_.grid, scene_.triangles,
                     scene_.shapes, scene_.materials, ray_buffer, hits);
         Gather gather(device, rays_.kernels, camera);
@@ -185,17 +185,17 @@ void check_plate(double cosine, double eta, std::size_t count, double most_z) {
 
 }  // namespace
 
-TEST_CASE("a few rays are mirrored or end at a smooth surface", "[see_surfaces][tiny]") {
+TEST_CASE("a few rays are mirrored or end at a smooth surface", "[trace_reflections][tiny]") {
     check_plate(0.35, 1.5, 40, 4.0);
 }
 
 // Twelve comparisons at 4 standard errors: wrong by chance once in 1300 choices of seed.
-TEST_CASE("the share of rays that a smooth surface mirrors is its reflectance", "[see_surfaces]") {
+TEST_CASE("the share of rays that a smooth surface mirrors is its reflectance", "[trace_reflections]") {
     for (const double eta : {1.33, 1.5, 2.42})
         for (const double cosine : {1.0, 0.7, 0.45, 0.35}) check_plate(cosine, eta, 40000, 4.0);
 }
 
-TEST_CASE("passes and pixels draw reflections of their own", "[see_surfaces][tiny]") {
+TEST_CASE("passes and pixels draw reflections of their own", "[trace_reflections][tiny]") {
     Bench bench({{0.0f, 1.0f, glossy}}, 5.0f);  // R = 0.44 head on
     const std::vector<Ray> rays(64, make_ray({0.1f, 4.0f, 0.2f}, {0.0f, -1.0f, 0.0f}));
     std::vector<std::vector<bool>> ended;
@@ -211,7 +211,7 @@ TEST_CASE("passes and pixels draw reflections of their own", "[see_surfaces][tin
 
 // Backs, other materials, an index of one, nothing at all: rays stay as they were, and hits are those of
 // trace_closest_all.
-TEST_CASE("what does not reflect is seen as without reflection", "[see_surfaces][tiny]") {
+TEST_CASE("what does not reflect is seen as without reflection", "[trace_reflections][tiny]") {
     for (const Plate& plate : {Plate{0.0f, -1.0f, glossy}, Plate{0.0f, 1.0f, grey}, Plate{0.0f, 1.0f, black},
                                Plate{0.0f, 1.0f, clear}, Plate{9.0f, 1.0f, glossy}}) {
         CAPTURE(plate.y, plate.material);
@@ -232,7 +232,7 @@ TEST_CASE("what does not reflect is seen as without reflection", "[see_surfaces]
 
 // Between two plates head on, a ray ends at its k-th meeting with probability R^k (1 - R), on one plate or the other by
 // turns, and sees black with probability R^65.
-TEST_CASE("rays between two parallel mirrors end on either by turns, or are given up", "[see_surfaces]") {
+TEST_CASE("rays between two parallel mirrors end on either by turns, or are given up", "[trace_reflections]") {
     for (const float eta : {20.0f, 200.0f}) {
         CAPTURE(eta);
         Bench bench({{0.0f, 1.0f, glossy}, {5.0f, -1.0f, glossy}}, eta);
@@ -257,7 +257,7 @@ TEST_CASE("rays between two parallel mirrors end on either by turns, or are give
     }
 }
 
-TEST_CASE("a ray between perfect mirrors is given up", "[see_surfaces][tiny]") {
+TEST_CASE("a ray between perfect mirrors is given up", "[trace_reflections][tiny]") {
     Bench bench({{0.0f, 1.0f, glossy, 0}, {5.0f, -1.0f, glossy, 0}}, 1e9f);
     const Seen seen = bench.see(std::vector<Ray>(20, make_ray({0.1f, 4.0f, 0.2f}, {0.0f, -1.0f, 0.0f})));
     for (std::size_t i = 0; i < seen.hits.size(); ++i) {
@@ -267,7 +267,7 @@ TEST_CASE("a ray between perfect mirrors is given up", "[see_surfaces][tiny]") {
     }
 }
 
-TEST_CASE("a reflection in a reflection is seen", "[see_surfaces]") {
+TEST_CASE("a reflection in a reflection is seen", "[trace_reflections]") {
     Bench bench({{0.0f, 1.0f, glossy}, {5.0f, -1.0f, glossy}}, 1e9f);
     const glm::vec3 from(3.0f, 4.0f, 0.2f), d = glm::normalize(glm::vec3(0.625f, -1.0f, 0.0f));
     const Seen seen = bench.see(std::vector<Ray>(4, make_ray(from, d)));
@@ -283,7 +283,7 @@ TEST_CASE("a reflection in a reflection is seen", "[see_surfaces]") {
 }
 
 // What such a surface emits itself is the same in all directions, whatever part of the rays it mirrors.
-TEST_CASE("a smooth surface that emits is seen with its radiance in the mean", "[see_surfaces]") {
+TEST_CASE("a smooth surface that emits is seen with its radiance in the mean", "[trace_reflections]") {
     for (const double cosine : {1.0, 0.35}) {
         CAPTURE(cosine);
         Bench bench({{0.0f, 1.0f, glossy, 0}}, 2.42f);
