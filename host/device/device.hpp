@@ -76,7 +76,7 @@ class Device {
     void set_local_size(std::size_t size) { shared_->local_size = size; }
     std::size_t local_size() const { return shared_->local_size; }
 
-    // How its ray kernels are built (host/device/ray_shape.hpp); none: as the device's description suggests.
+    // How its ray kernels are built; none: as the device's description suggests.
     void set_ray_shape(RayShape shape) { shared_->ray_shape = shape; }
     RayShape ray_shape() const { return shared_->ray_shape.value_or(choose_ray_shape(description())); }
 
