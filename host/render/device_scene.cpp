@@ -10,7 +10,7 @@
 #include "host/render/green_walk.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
-#include "host/scene/mesh_topology.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
 #include "host/subsurface/distance_mixture.hpp"
 #include "host/subsurface/distance_sampler.hpp"
 

@@ -1,5 +1,5 @@
-#include "host/scene/json_cursor.hpp"
-#include "host/scene/json_tree.hpp"
+#include "host/scene/readers/json_cursor.hpp"
+#include "host/scene/readers/json_tree.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "host/render/gather.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/known_light.hpp"
 #include "tests/support/photon_fixture.hpp"

@@ -2,7 +2,7 @@
 #include <random>
 #include <vector>
 
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/photon_fixture.hpp"
 #include "tests/support/traced_scene.hpp"

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "host/scene/bvh_builder.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/bvh/bvh_builder.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "kernels/shared/gather.h"
 #include "tests/support/catch.hpp"
 #include "tests/support/photon_fixture.hpp"

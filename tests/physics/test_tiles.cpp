@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "host/render/pass_maker.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "host/subsurface/fresnel.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/bvh_builder.hpp"
+#include "host/scene/bvh/bvh_builder.hpp"
 #include "tests/support/device_fixture.hpp"
 
 namespace stokes {
