@@ -9,7 +9,7 @@
 
 #include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
-#include "host/scene/readers/json_tree.hpp"
+#include "host/core/json_tree.hpp"
 #include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"

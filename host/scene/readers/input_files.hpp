@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host/core/error.hpp"
-#include "host/scene/readers/json_cursor.hpp"
+#include "host/core/json_cursor.hpp"
 #include "host/scene/readers/spectrum_reader.hpp"
 
 namespace stokes {

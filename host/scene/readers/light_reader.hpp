@@ -1,7 +1,7 @@
 // Lights of a scene file.
 #pragma once
 
-#include "host/scene/readers/json_cursor.hpp"
+#include "host/core/json_cursor.hpp"
 #include "host/scene/readers/spectrum_reader.hpp"
 #include "host/scene/scene.hpp"
 

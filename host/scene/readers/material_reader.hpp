@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "host/scene/readers/json_cursor.hpp"
+#include "host/core/json_cursor.hpp"
 #include "host/scene/readers/spectrum_reader.hpp"
 #include "host/scene/scene.hpp"
 

@@ -4,12 +4,13 @@
 #include <new>
 
 #include "host/core/error.hpp"
+#include "host/core/json_cursor.hpp"
 #include "host/core/text_input.hpp"
-#include "host/scene/readers/json_cursor.hpp"
 #include "host/scene/readers/light_reader.hpp"
 #include "host/scene/readers/material_reader.hpp"
 #include "host/scene/readers/shape_reader.hpp"
 #include "host/scene/readers/spectrum_reader.hpp"
+#include "host/scene/scene_keys.hpp"
 #include "host/scene/settings_reader.hpp"
 
 namespace stokes {

@@ -15,6 +15,7 @@
 #include "host/scene/readers/material_reader.hpp"
 #include "host/scene/readers/mesh_reader.hpp"
 #include "host/scene/readers/picture.hpp"
+#include "host/scene/scene_keys.hpp"
 
 namespace stokes {
 namespace {

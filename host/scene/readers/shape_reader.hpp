@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host/scene/readers/json_cursor.hpp"
+#include "host/core/json_cursor.hpp"
 #include "host/scene/scene.hpp"
 
 namespace stokes {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "host/core/csv_table.hpp"
+#include "host/core/json_cursor.hpp"
 #include "host/core/spectrum.hpp"
-#include "host/scene/readers/json_cursor.hpp"
 
 namespace stokes {
 

@@ -8,10 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/readers/json_tree.hpp"
-#include "host/scene/scene_keys.hpp"
+#include "host/core/json_tree.hpp"
 
 namespace stokes {
+
+struct ObjectKeys {
+    std::string kind;  // the object's name under $defs of the schema
+    std::vector<std::string> required;
+    std::vector<std::string> optional;
+};
 
 // Bounds of a number; the open ends are excluded.
 struct NumberRange {

@@ -1,4 +1,4 @@
-#include "host/scene/readers/json_cursor.hpp"
+#include "host/core/json_cursor.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "host/scene/readers/json_tree.hpp"
+#include "host/core/json_tree.hpp"
 
 #include <algorithm>
 #include <cstddef>
