@@ -18,7 +18,7 @@
 #include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 
 namespace stokes {
 

@@ -19,8 +19,8 @@
 #include "host/render/assumptions.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
-#include "host/scene/mesh_topology.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 
 namespace stokes {
 

@@ -131,6 +131,8 @@ class Allocation {
     bool allocated() const { return owner_ != nullptr; }
     const cl::Buffer& buffer() const { return owner_->buffer; }
     const Device& device() const { return owner_->device; }
+    // Keeps the memory.
+    std::shared_ptr<const void> owner() const { return owner_; }
     void write(const void* data, std::size_t bytes, std::size_t offset) const;
     void read(void* data, std::size_t bytes, std::size_t offset) const;
     void copy_to(const Allocation& target, std::size_t bytes) const;
@@ -164,6 +166,7 @@ class Buffer {
     std::size_t size() const { return size_; }
     bool allocated() const { return allocation_.allocated(); }
     const cl::Buffer& cl_buffer() const { return allocation_.buffer(); }
+    std::shared_ptr<const void> owner() const { return allocation_.owner(); }
 
     void upload(const T* data, std::size_t count, std::size_t offset = 0) const {
         check(count, offset);

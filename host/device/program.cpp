@@ -66,7 +66,7 @@ void Kernel::bind(std::size_t index, const Arguments* const* groups, std::size_t
     if (found == nullptr) fail("is bound by no group");
     if (found->pointer != wanted.pointer || found->type != wanted.type)
         fail("got " + std::string(found->type) + (found->pointer ? "*" : ""));
-    if (found->pointer && found->empty()) fail("has no buffer yet");
+    if (found->pointer && !found->owner) fail("has no buffer yet");
     const cl_int error = ::clSetKernelArg(kernel_(), static_cast<cl_uint>(index), found->size,
                                           static_cast<const void*>(found->bytes.data()));
     if (error != CL_SUCCESS) fail("was refused, OpenCL error " + std::to_string(error));

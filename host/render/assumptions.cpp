@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "host/core/log.hpp"
-#include "host/scene/mesh_thickness.hpp"
-#include "host/scene/mesh_topology.hpp"
+#include "host/scene/mesh/mesh_thickness.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
 
 namespace stokes {
 namespace {

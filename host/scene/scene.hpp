@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/core/spectrum.hpp"
-#include "host/scene/picture.hpp"
+#include "host/scene/readers/picture.hpp"
 
 namespace stokes {
 

@@ -2,16 +2,11 @@
 // scenes/scene.schema.json to them.
 #pragma once
 
-#include <string>
 #include <vector>
 
-namespace stokes {
+#include "host/core/json_cursor.hpp"
 
-struct ObjectKeys {
-    std::string kind;  // the object's name under $defs of the schema
-    std::vector<std::string> required;
-    std::vector<std::string> optional;
-};
+namespace stokes {
 
 namespace keys {
 

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "host/scene/scene_keys.hpp"
+
 namespace stokes {
 namespace {
 

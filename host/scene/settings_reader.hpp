@@ -1,7 +1,7 @@
 // How a scene file wants to be rendered and seen. All throw InputError.
 #pragma once
 
-#include "host/scene/json_cursor.hpp"
+#include "host/core/json_cursor.hpp"
 #include "host/scene/scene.hpp"
 
 namespace stokes {

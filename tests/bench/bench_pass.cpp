@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "host/render/renderer.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/bench/photon_stage.hpp"
 #include "tests/bench/stages.hpp"
 

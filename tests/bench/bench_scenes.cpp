@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "host/scene/mesh_reader.hpp"
+#include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/triangle_meshes.hpp"
 
 namespace stokes::bench {

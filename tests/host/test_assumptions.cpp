@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "host/render/assumptions.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/scene_reader.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/test_scenes.hpp"

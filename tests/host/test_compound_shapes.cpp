@@ -5,11 +5,11 @@
 #include <tuple>
 
 #include "host/render/assumptions.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/mesh_thickness.hpp"
-#include "host/scene/mesh_topology.hpp"
-#include "host/scene/scene_reader.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/mesh_thickness.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
+#include "host/scene/mesh/shapes.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 

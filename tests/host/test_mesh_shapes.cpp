@@ -2,8 +2,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace stokes;

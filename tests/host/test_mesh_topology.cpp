@@ -1,11 +1,11 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/mesh_reader.hpp"
-#include "host/scene/mesh_thickness.hpp"
-#include "host/scene/mesh_topology.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/mesh_thickness.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
+#include "host/scene/mesh/shapes.hpp"
+#include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/paths.hpp"

@@ -1,7 +1,7 @@
 #include <random>
 
 #include "host/core/media_limits.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "host/subsurface/escape.hpp"
 #include "host/subsurface/paper_transport.hpp"
 #include "tests/support/catch.hpp"

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/paths.hpp"

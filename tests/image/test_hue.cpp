@@ -2,7 +2,7 @@
 #include <set>
 
 #include "host/render/pass_spectra.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
@@ -57,7 +57,8 @@ std::vector<SeenPoint> seen_points(const Scene& scene) {
     const Buffer<Hit> hits(device, "hits", count);
     on_device.rays.kernels.program(device, "trace_rays.cl")
         .kernel("trace_closest_all")
-        .launch(count, count, on_device.rays.nodes, on_device.rays.blocks, on_device.rays.grid, ray_buffer, hits);
+        .launch(count,
+                Arguments().add("n", count).add(on_device.rays.arguments()).add("rays", ray_buffer).add("hits", hits));
     const std::vector<Triangle> triangles = on_device.triangles.download();
     std::vector<SeenPoint> points;
     for (const Hit& hit : hits.download()) {

@@ -119,16 +119,45 @@ Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cel
             on_device(std::vector<EventSample>(room, EventSample{sentinel, sentinel}));
         const auto count = static_cast<std::uint32_t>(cells->records().size());
         program.kernel("emit_stratified")
-            .launch(photons, pass, count, records, starts, on_device(lights()), on_device(areas), on_device(all),
-                    on_device(photon_flux()), rays, flux, ledgers, list, event_samples);
+            .launch(photons, Arguments()
+                                 .add("pass", pass)
+                                 .add("cell_count", count)
+                                 .add("cells", records)
+                                 .add("first_photons", starts)
+                                 .add("lights", on_device(lights()))
+                                 .add("light_areas", on_device(areas))
+                                 .add("triangles", on_device(all))
+                                 .add("photon_flux", on_device(photon_flux()))
+                                 .add("rays", rays)
+                                 .add("flux", flux)
+                                 .add("ledgers", ledgers)
+                                 .add("list", list)
+                                 .add("event_samples", event_samples));
         words = event_samples.download();
-        program.kernel("find_places").launch(photons, pass, count, records, starts, on_device(lights()), owners, at);
+        program.kernel("find_places")
+            .launch(photons, Arguments()
+                                 .add("pass", pass)
+                                 .add("cell_count", count)
+                                 .add("cells", records)
+                                 .add("first_photons", starts)
+                                 .add("lights", on_device(lights()))
+                                 .add("cell_of_path", owners)
+                                 .add("places", at, "float4"));
         cell_of_path = owners.download();
         places = at.download();
     } else {
         program.kernel("emit_photons")
-            .launch(photons, pass, 5u, on_device(lights()), on_device(areas), on_device(all), on_device(photon_flux()),
-                    rays, flux, ledgers, list);
+            .launch(photons, Arguments()
+                                 .add("pass", pass)
+                                 .add("light_count", 5u)
+                                 .add("lights", on_device(lights()))
+                                 .add("light_areas", on_device(areas))
+                                 .add("triangles", on_device(all))
+                                 .add("photon_flux", on_device(photon_flux()))
+                                 .add("rays", rays)
+                                 .add("flux", flux)
+                                 .add("ledgers", ledgers)
+                                 .add("list", list));
     }
     Emitted result{rays.download(photons),
                    flux.download(photons),

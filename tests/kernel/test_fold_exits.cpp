@@ -2,7 +2,7 @@
 #include <random>
 #include <vector>
 
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/photon_fixture.hpp"
 #include "tests/support/traced_scene.hpp"
@@ -40,8 +40,13 @@ std::vector<ExitPoint> fold(const Traced& scene, const Missed& missed) {
     const Buffer<ExitPoint> exits = on_device(missed.exits);
     Program(test_device(), "fold_exits.cl")
         .kernel("fold_exits")
-        .launch(n, n, pass_on_device(1, 0, offset_mm), scene.nodes, scene.blocks, scene.bvh.grid, scene.triangle_buffer,
-                on_device(missed.probes), exits);
+        .launch(n, Arguments()
+                       .add("count", n)
+                       .add("pass", pass_on_device(1, 0, offset_mm))
+                       .add(scene.arguments())
+                       .add("triangles", scene.triangle_buffer)
+                       .add("probes", on_device(missed.probes))
+                       .add("exits", exits));
     return exits.download();
 }
 

@@ -62,7 +62,7 @@ class Bench {
         set_photons(photons, radius_mm);
     }
 
-    void collect() { gather_.collect_points(scene_, pass_, rays_, hits_, film_); }
+    void collect() { gather_.collect_points(common_, rays_, hits_, film_); }
     // Points get that many times the radius each; the surface map is gathered class by class.
     void run_with(const std::vector<float>& factors, const std::vector<Seen>& seen, const std::vector<Photon>& photons,
                   float radius_mm) {
@@ -73,10 +73,10 @@ class Bench {
         gather_.choose_radii();
         for (const float radius_class : gather_.radius_classes()) {
             set_photons(photons, radius_class * radius_mm);
-            gather_.add_map(STOKES_MAP_SURFACE, radius_class, hash_, scene_, pass_, film_);
+            gather_.add_map(common_, STOKES_MAP_SURFACE, radius_class, hash_, film_);
         }
     }
-    void add(std::uint32_t map) { gather_.add_map(map, 1.0f, hash_, scene_, pass_, film_); }
+    void add(std::uint32_t map) { gather_.add_map(common_, map, 1.0f, hash_, film_); }
     void run() {
         collect();
         for (std::uint32_t map = 0; map < STOKES_MAP_COUNT; ++map) add(map);
@@ -126,8 +126,13 @@ class Bench {
             lights[0].v[k] = emitted(k);
         }
         const Device& device = test_device();
-        scene_ = {{device, "triangles", triangles}, {device, "shapes", shapes},  {device, "materials", materials},
-                  {device, "spectra", spectra},     {device, "emitted", lights}, no_textures(materials.size())};
+        common_ = Arguments("triangles", Buffer<Triangle>(device, "triangles", triangles))
+                      .add("shapes", Buffer<ShapeRecord>(device, "shapes", shapes))
+                      .add("materials", Buffer<MaterialRecord>(device, "materials", materials))
+                      .add("spectra", Buffer<Flux16>(device, "spectra", spectra))
+                      .add("light_radiance", Buffer<Flux16>(device, "emitted", lights))
+                      .add("pass", pass_)
+                      .add(no_textures(materials.size()).arguments());
         rays_ = {device, "rays", rays};
         hits_ = {device, "hits", hits};
     }
@@ -159,7 +164,7 @@ class Bench {
     SpatialHash hash_;
     Buffer<FilmValue> film_;
     Buffer<PassConstants> pass_;
-    GatherScene scene_;
+    Arguments common_;
     Buffer<Ray> rays_;
     Buffer<Hit> hits_;
 };

@@ -164,7 +164,7 @@ TEST_CASE("a shape that is asked for decides how nodes and kernels are made") {
         const auto n = static_cast<cl_uint>(rays.size());
         scene.kernels.program(device, "trace_rays.cl")
             .kernel("trace_closest_all")
-            .launch(n, n, scene.nodes, scene.blocks, scene.grid, in, out);
+            .launch(n, Arguments().add("n", n).add(scene.arguments()).add("rays", in).add("hits", out));
         CHECK(same_bits(expected, out.download()));
     }
     device.set_ray_shape(usual);

@@ -257,8 +257,12 @@ TEST_CASE("a list traces its rays and leaves the others' hits alone", "[tiny]") 
     const Hit untouched{-5.0f, -5.0f, -5.0f, 12345u};
     const Buffer<Hit> out(test_device(), "hits", std::vector<Hit>(rays.size(), untouched));
     scene.program.kernel("trace_closest")
-        .launch(list.size(), indices, static_cast<cl_uint>(list.size()), scene.nodes, scene.blocks, scene.bvh.grid, in,
-                out);
+        .launch(list.size(), Arguments()
+                                 .add("list", indices)
+                                 .add("n", static_cast<cl_uint>(list.size()))
+                                 .add(scene.arguments())
+                                 .add("rays", in)
+                                 .add("hits", out));
     std::vector<Hit> expected(rays.size(), untouched);
     const auto all = scene.closest(rays);
     for (const cl_uint i : list) expected[i] = all[i];

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "host/render/emission_trial.hpp"
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/statistics.hpp"
@@ -58,22 +57,18 @@ Stored measured(Scene scene, Branches branches, int exits, std::uint32_t seed, b
     scene.render.seed = seed;
     const Device& device = test_device();
     const DeviceScene on_device(device, scene);
-    PassMaker pass(device, scene, on_device);
-    if (even) pass.set_emission(EmissionCells::stratified(emitting_lights(scene, on_device), photons));
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
+    PhotonPass pass(device, scene, on_device, photons, 16);  // small maps: they have to grow
+    if (even) pass.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene, on_device), photons));
     PassWavelengths wavelengths = pass_wavelengths(RenderSettings{}, 0);
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) wavelengths.set[k] = 330 + 20 * static_cast<int>(k);
     Stored stored;
     std::array<double, 8> energy{}, photon_sums{};
     for (std::uint32_t batch = 0; batch < batches; ++batch) {
-        pass.make(wavelengths, batch, photons);
-        for (PhotonMap& map : maps) map.clear();
-        const PhotonAccount account = tracer.trace(on_device, pass.buffers(), photons, maps);
+        pass.prepare(wavelengths, batch, photons);
+        const PhotonAccount account = pass.trace();
         CHECK(account.refused_slots == 0);
         CHECK(account.fates[STOKES_FATE_OVERFLOW] + account.fates[STOKES_FATE_EVENT_LIMIT] == 0);
-        add_maps(maps, stored);
+        add_maps(pass.maps(), stored);
         for (std::size_t k = 0; k < energy.size(); ++k) {
             energy[k] += account.energy[k];
             photon_sums[k] += account.photons[k];

@@ -2,8 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/half_space.hpp"
@@ -70,24 +69,20 @@ TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[c
         scene.fluorophores[0].quantum_yield = 0.8;
         scene.media[0].sigma_a = scene.media[0].sigma_a.scaled(c.albedo_scale);
         const DeviceScene on_device(device, scene);
-        PassMaker pass(device, scene, on_device);
         const std::uint32_t batches = 20, photons = 32768;
-        PhotonTracer tracer(device, on_device.rays.kernels, photons);
-        PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                        PhotonMap(device, "surface", 16)};
+        PhotonPass pass(device, scene, on_device, photons, 16);  // small maps: they have to grow
         const PassWavelengths wavelengths = pass_wavelengths(scene.render, 3);
         std::array<std::array<Sample, STOKES_WAVELENGTHS>, 3> stored;
         double reflected = 0.0, missed = 0.0;
         for (std::uint32_t batch = 0; batch < batches; ++batch) {
-            pass.make(wavelengths, batch, photons);
-            for (PhotonMap& map : maps) map.clear();
-            const PhotonAccount account = tracer.trace(on_device, pass.buffers(), photons, maps);
+            pass.prepare(wavelengths, batch, photons);
+            const PhotonAccount account = pass.trace();
             reflected += static_cast<double>(account.reflections);
             missed += account.energy[4] / account.energy[0];
             CHECK(account.refused_slots == 0);
             for (std::size_t m = 0; m < 3; ++m) {
                 std::array<double, STOKES_WAVELENGTHS> sum{};
-                for (const Flux16& flux : maps[m].flux().download(maps[m].used()))
+                for (const Flux16& flux : pass.maps()[m].flux().download(pass.maps()[m].used()))
                     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += static_cast<double>(flux.v[k]);
                 for (std::size_t k = 0; k < sum.size(); ++k) stored[m][k].add(sum[k]);
             }

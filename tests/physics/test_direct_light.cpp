@@ -2,8 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
@@ -56,16 +55,13 @@ Stored trace(const Scene& scene) {
     const Device& device = test_device();
     const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
     const DeviceScene on_device(device, scene);
-    PassMaker pass(device, scene, on_device);
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
-    pass.make(3, photons);
+    PhotonPass pass(device, scene, on_device, photons, 16);  // small maps: they have to grow
+    pass.prepare(3, photons);
     Stored stored;
-    stored.account = tracer.trace(on_device, pass.buffers(), photons, maps);
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        stored.heads[m] = maps[m].heads().download(maps[m].used());
-        stored.flux[m] = maps[m].flux().download(maps[m].used());
+    stored.account = pass.trace();
+    for (std::size_t m = 0; m < pass.maps().size(); ++m) {
+        stored.heads[m] = pass.maps()[m].heads().download(pass.maps()[m].used());
+        stored.flux[m] = pass.maps()[m].flux().download(pass.maps()[m].used());
     }
     return stored;
 }

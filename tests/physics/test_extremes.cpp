@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "host/render/renderer.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/test_scenes.hpp"

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "host/render/pass_spectra.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "host/subsurface/power_table.hpp"
 #include "kernels/shared/hash_grid.h"
 #include "tests/support/catch.hpp"
@@ -60,24 +60,11 @@ TEST_CASE("the maps of a flat slab hold the flux that the paper's model says", "
         const Scene scene = slab_scene(0.4, angle_deg);
         const DeviceScene on_device(device, scene);
         const std::uint32_t photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-        const PassSpectra spectra = make_pass_spectra(scene, {1.0}, on_device.light_surface_area_mm2, 3, photons);
-        PassConstants constants = spectra.constants;
-        constants.offset_mm = on_device.offset_mm;
-        const PassBuffers pass{
-            Buffer<PassConstants>(device, "constants", {constants}), Buffer<Flux16>(device, "rows", spectra.rows),
-            Buffer<Flux16>(device, "flux", spectra.photon_flux), Buffer<Flux16>(device, "radiance", spectra.radiance)};
-        const Buffer<float> lambda(device, "lambda", 16);
-        lambda.upload(constants.lambda_nm, 16);
-        const DeviceTables& tables = on_device.tables;
-        Program(device, "resample_tables.cl")
-            .kernel("resample_table")
-            .launch(tables.entries, tables.values, static_cast<std::uint32_t>(tables.wavelengths.count),
-                    static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step), lambda,
-                    tables.at_wavelengths, tables.entries);
-        PhotonTracer tracer(device, on_device.rays.kernels, photons);
-        PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                        PhotonMap(device, "surface", 16)};  // small: they have to grow
-        const PhotonAccount account = tracer.trace(on_device, pass, photons, maps);
+        PhotonPass pass(device, scene, on_device, photons, 16);  // small maps: they have to grow
+        pass.prepare(3, photons);
+        const PhotonAccount account = pass.trace();
+        const PassConstants& constants = pass.inputs().spectra().constants;
+        const PhotonMaps& maps = pass.maps();
         CHECK(account.missed_exits == 0);
         CHECK(account.refused_slots == 0);
         CHECK(account.fates[STOKES_FATE_ESCAPED] + account.fates[STOKES_FATE_ABSORBED] == photons);

@@ -1,5 +1,5 @@
 #include "host/render/pass_spectra.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
@@ -54,31 +54,15 @@ std::array<double, 16> emitted_radiance(const Scene& scene, const WavelengthSet&
     return radiance;
 }
 
-// The deposits of a pass, as PhotonTracer leaves them, summed over photons: [map][wavelength] [W/nm].
+// The deposits of a pass, as PhotonPass leaves them, summed over photons: [map][wavelength] [W/nm].
 std::array<std::array<double, 16>, STOKES_MAP_COUNT> deposited(const Scene& scene, std::uint32_t pass) {
     const Device& device = test_device();
     const DeviceScene on_device(device, scene);
     const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-    const PassSpectra spectra =
-        make_pass_spectra(scene, on_device.light_probability, on_device.light_surface_area_mm2, pass, photons);
-    PassConstants constants = spectra.constants;
-    constants.offset_mm = on_device.offset_mm;
-    const PassBuffers buffers{
-        Buffer<PassConstants>(device, "constants", {constants}), Buffer<Flux16>(device, "rows", spectra.rows),
-        Buffer<Flux16>(device, "flux", spectra.photon_flux), Buffer<Flux16>(device, "radiance", spectra.radiance)};
-    const Buffer<float> lambda(device, "lambda", 16);
-    lambda.upload(constants.lambda_nm, 16);
-    const DeviceTables& tables = on_device.tables;
-    if (tables.entries > 0)
-        Program(device, "resample_tables.cl")
-            .kernel("resample_table")
-            .launch(tables.entries, tables.values, static_cast<std::uint32_t>(tables.wavelengths.count),
-                    static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step), lambda,
-                    tables.at_wavelengths, tables.entries);
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
-    tracer.trace(on_device, buffers, photons, maps);
+    PhotonPass photon_pass(device, scene, on_device, photons, 16);
+    photon_pass.prepare(pass, photons);
+    photon_pass.trace();
+    const PhotonMaps& maps = photon_pass.maps();
     std::array<std::array<double, 16>, STOKES_MAP_COUNT> sums{};
     for (std::size_t m = 0; m < maps.size(); ++m) {
         const std::vector<PhotonHead> heads = maps[m].heads().download(maps[m].used());

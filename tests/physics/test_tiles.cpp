@@ -3,8 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "host/render/pass_maker.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "host/subsurface/fresnel.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
@@ -62,17 +61,14 @@ std::array<Stored, 3> stored_light(const Scene& scene) {
     const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
     const Device& device = test_device();
     const DeviceScene on_device(device, scene);
-    PassMaker maker(device, scene, on_device);
-    maker.make(0, photons);
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
-    const PhotonAccount account = tracer.trace(on_device, maker.buffers(), photons, maps);
+    PhotonPass maker(device, scene, on_device, photons, 16);  // small maps: they have to grow
+    maker.prepare(0, photons);
+    const PhotonAccount account = maker.trace();
     CHECK(account.missed_exits == 0);
     std::array<Stored, 3> result;
     for (std::size_t m = 0; m < 3; ++m) {
-        const std::vector<PhotonHead> heads = maps[m].heads().download(maps[m].used());
-        const std::vector<Flux16> flux = maps[m].flux().download(maps[m].used());
+        const std::vector<PhotonHead> heads = maker.maps()[m].heads().download(maker.maps()[m].used());
+        const std::vector<Flux16> flux = maker.maps()[m].flux().download(maker.maps()[m].used());
         for (std::size_t i = 0; i < heads.size(); ++i) {
             if (heads[i].normal == STOKES_EMPTY_SLOT) continue;
             result[m].heads.push_back(heads[i]);

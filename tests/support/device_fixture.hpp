@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 
 namespace stokes {
 

@@ -9,8 +9,8 @@
 #include "host/image/colour.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/wavelengths.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/statistics.hpp"
 
 namespace stokes {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
 
 namespace stokes {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/bvh_builder.hpp"
+#include "host/scene/bvh/bvh_builder.hpp"
 #include "tests/support/device_fixture.hpp"
 
 namespace stokes {
@@ -35,32 +35,37 @@ struct Traced {
           blocks(test_device(), "blocks", bvh.blocks),
           triangle_buffer(test_device(), "triangles", scene) {}
 
+    Arguments arguments() const {
+        return Arguments().add("bvh_nodes", nodes, "BvhNode").add("bvh_blocks", blocks).add("bvh_grid", bvh.grid);
+    }
     std::vector<Hit> closest(const std::vector<Ray>& rays) {
         const Buffer<Ray> in(test_device(), "rays", rays);
         const Buffer<Hit> out(test_device(), "hits", rays.size());
         const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_closest_all").launch(n, n, nodes, blocks, bvh.grid, in, out);
+        program.kernel("trace_closest_all").launch(n, arguments().add("n", n).add("rays", in).add("hits", out));
         return out.download();
     }
     std::vector<Hit> packets(const std::vector<Ray>& rays) {
         const Buffer<Ray> in(test_device(), "rays", rays);
         const Buffer<Hit> out(test_device(), "hits", rays.size());
         const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_packets").launch((n + 15) / 16, n, nodes, blocks, bvh.grid, in, out);
+        program.kernel("trace_packets").launch((n + 15) / 16, arguments().add("n", n).add("rays", in).add("hits", out));
         return out.download();
     }
     std::vector<cl_uint> any(const std::vector<Ray>& rays) {
         const Buffer<Ray> in(test_device(), "rays", rays);
         const Buffer<cl_uint> out(test_device(), "occluded", rays.size());
         const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_any").launch(n, n, nodes, blocks, bvh.grid, in, out);
+        program.kernel("trace_any").launch(n, arguments().add("n", n).add("rays", in).add("occluded", out));
         return out.download();
     }
     std::vector<Hit> probe(const std::vector<Probe>& probes) {
         const Buffer<Probe> in(test_device(), "probes", probes);
         const Buffer<Hit> out(test_device(), "hits", probes.size());
         const auto n = static_cast<cl_uint>(probes.size());
-        program.kernel("trace_probe").launch(n, n, nodes, blocks, bvh.grid, triangle_buffer, in, out);
+        program.kernel("trace_probe")
+            .launch(n,
+                    arguments().add("n", n).add("triangles", triangle_buffer).add("probes", in).add("probe_hits", out));
         return out.download();
     }
 

@@ -1,0 +1,131 @@
+#include "host/scene/readers/spectrum_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "host/core/embedded.hpp"
+#include "host/core/error.hpp"
+#include "host/core/text_input.hpp"
+#include "host/scene/scene_keys.hpp"
+
+namespace stokes {
+namespace {
+
+constexpr NumberRange value_range{0.0, 1e12};
+constexpr NumberRange wavelength_range{0.0, 1e5, true};
+
+std::optional<Outside> read_outside(const JsonCursor& where) {
+    const auto outside = where.find("outside");
+    if (!outside) return std::nullopt;
+    return outside->choice({"zero", "hold"}) == 0 ? Outside::zero : Outside::hold;
+}
+
+Spectrum read_illuminant(const JsonCursor& where) {
+    where.expect_keys(keys::spectrum_illuminant);
+    static const std::vector<std::string> names = {"A", "D65", "E"};
+    const std::string name = names[where.at("illuminant").choice(names)];
+    const std::string file = "tables/cie/illuminants_1nm.csv";
+    const auto found = embedded_files().find(file);
+    if (found == embedded_files().end()) throw RunError(file + " is not in this program");
+    return csv_spectrum(parse_csv(found->second, file), name, Outside::zero);
+}
+
+Spectrum read_pairs(const JsonCursor& pairs) {
+    Spectrum result;
+    for (const JsonCursor& pair : pairs.items()) {
+        const auto both = pair.items();
+        if (both.size() != 2) pair.fail_expected("[wavelength in nm, value]");
+        const double lambda_nm = both[0].number(wavelength_range);
+        if (!result.lambda_nm.empty() && lambda_nm <= result.lambda_nm.back()) {
+            both[0].fail(
+                fmt::format("expected wavelengths that increase, got {} after {}", lambda_nm, result.lambda_nm.back()));
+        }
+        result.lambda_nm.push_back(lambda_nm);
+        result.value.push_back(both[1].number(value_range));
+    }
+    if (result.value.empty()) pairs.fail("expected at least one [wavelength in nm, value]");
+    return result;
+}
+
+void check_maximum(const JsonCursor& where, const Spectrum& spectrum, double maximum) {
+    for (std::size_t i = 0; i < spectrum.value.size(); ++i) {
+        if (spectrum.value[i] <= maximum) continue;
+        where.fail(fmt::format("expected values in [0, {:g}], got {} at {} nm", maximum, spectrum.value[i],
+                               spectrum.lambda_nm[i]));
+    }
+}
+
+}  // namespace
+
+std::string scene_path(const std::filesystem::path& folder, const std::string& file) {
+    return (folder / file).lexically_normal().string();
+}
+
+void SpectrumReader::define(const JsonCursor& spectra) {
+    for (const auto& [name, value] : spectra.named_members()) named_[name] = read_object(value);
+}
+
+Spectrum SpectrumReader::read(const JsonCursor& where, Outside outside, double maximum) {
+    if (where.is(JsonValue::Type::number)) {
+        return Spectrum::constant(where.number({0.0, std::min(maximum, value_range.high)}));
+    }
+    Definition definition;
+    if (where.is(JsonValue::Type::string)) {
+        const auto found = named_.find(where.text());
+        if (found == named_.end()) {
+            std::vector<std::string> names;
+            for (const auto& entry : named_) names.push_back(entry.first);
+            where.fail_undefined("spectra", names);
+        }
+        definition = found->second;
+    } else if (where.is(JsonValue::Type::object)) {
+        definition = read_object(where);
+    } else {
+        where.fail_expected("a spectrum (a number, a name in spectra, or an object)");
+    }
+    check_maximum(where, definition.spectrum, maximum);
+    definition.spectrum.outside = definition.outside.value_or(outside);
+    return definition.spectrum;
+}
+
+SpectrumReader::Definition SpectrumReader::read_object(const JsonCursor& where) {
+    const std::string kind = where.one_of({"file", "illuminant", "pairs", "constant"});
+    if (kind == "file") return read_file_column(where);
+    if (kind == "illuminant") return {read_illuminant(where), Outside::zero};
+    if (kind == "pairs") {
+        where.expect_keys(keys::spectrum_pairs);
+        return {read_pairs(where.at("pairs")), read_outside(where)};
+    }
+    where.expect_keys(keys::spectrum_constant);
+    return {Spectrum::constant(where.at("constant").number(value_range)), Outside::hold};
+}
+
+SpectrumReader::Definition SpectrumReader::read_file_column(const JsonCursor& where) {
+    where.expect_keys(keys::spectrum_file);
+    const CsvTable& csv = table(where.at("file"));
+    const JsonCursor column = where.at("column");
+    const std::string& name = column.text();
+    const double scale = where.number_or("scale", 1.0, value_range);
+    Spectrum spectrum;
+    try {
+        spectrum = csv_spectrum(csv, name, Outside::zero).scaled(scale);
+    } catch (const InputError& error) {
+        column.fail(error.what());
+    }
+    check_maximum(where, spectrum, value_range.high);
+    return {std::move(spectrum), read_outside(where)};
+}
+
+const CsvTable& SpectrumReader::table(const JsonCursor& file) {
+    const std::string path = scene_path(folder_, file.text());
+    const auto found = tables_.find(path);
+    if (found != tables_.end()) return found->second;
+    try {
+        return tables_.emplace(path, read_csv(path)).first->second;
+    } catch (const InputError& error) {
+        file.fail(error.what());
+    }
+}
+
+}  // namespace stokes

@@ -1,0 +1,48 @@
+// Spectra of a scene file: named ones, numbers, and objects written in place.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "host/core/csv_table.hpp"
+#include "host/core/json_cursor.hpp"
+#include "host/core/spectrum.hpp"
+
+namespace stokes {
+
+// The place of a file that a scene names: relative to the scene's folder unless absolute.
+std::string scene_path(const std::filesystem::path& folder, const std::string& file);
+
+class SpectrumReader {
+  public:
+    explicit SpectrumReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    const std::filesystem::path& folder() const { return folder_; }
+
+    // Takes in the scene's "spectra". Throws InputError.
+    void define(const JsonCursor& spectra);
+
+    // A name from "spectra", a number, or an object. Values are >= 0; one above maximum is an error. outside
+    // holds where the scene does not say; a constant is the same everywhere, an illuminant zero outside its
+    // table.
+    Spectrum read(const JsonCursor& where, Outside outside, double maximum = std::numeric_limits<double>::infinity());
+
+  private:
+    struct Definition {
+        Spectrum spectrum;
+        std::optional<Outside> outside;
+    };
+
+    Definition read_object(const JsonCursor& where);
+    Definition read_file_column(const JsonCursor& where);
+    const CsvTable& table(const JsonCursor& file);
+
+    std::filesystem::path folder_;
+    std::map<std::string, CsvTable> tables_;  // by path
+    std::map<std::string, Definition> named_;
+};
+
+}  // namespace stokes
