@@ -1,7 +1,8 @@
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "host/subsurface/power_table_json.hpp"
+#include "host/subsurface/power_table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -40,11 +41,11 @@ TEST_CASE("stokes tables writes the three tables of each translucent material", 
          {make_fluorescence_table(gel), make_single_table(gel), make_multiple_table(gel)}) {
         const std::string path = folder + "/jelly." + expected.component + ".json";
         CHECK_THAT(file_content(log.file("out")), Contains(path + "\n"));
-        const PowerTable written = read_power_table(path);
-        CHECK(written.component == expected.component);
-        CHECK(written.medium.name == "gel");
-        CHECK(written.medium.dipole_eta == 1.4);
-        CHECK((written.values == expected.values));
+        const auto written = nlohmann::json::parse(file_content(path));
+        CHECK(written["component"] == expected.component);
+        CHECK(written["medium"]["name"] == "gel");
+        CHECK(written["medium"]["dipole_eta"] == 1.4);
+        CHECK((written["values"].get<std::vector<double>>() == expected.values));
     }
 }
 

@@ -1,7 +1,6 @@
 #include "tests/support/device_fixture.hpp"
 
-#include <fstream>
-#include <sstream>
+#include "host/core/text_input.hpp"
 
 namespace stokes {
 
@@ -12,12 +11,8 @@ Device& test_device() {
 }
 
 Program test_program(const std::string& name, const std::vector<std::string>& options) {
-    const std::string path = std::string(STOKES_SOURCE_DIR) + "/tests/kernel/" + name;
-    std::ifstream in(path);
-    if (!in) throw RunError(path + ": cannot read this test kernel");
-    std::ostringstream text;
-    text << in.rdbuf();
-    return Program::from_source(test_device(), name, text.str(), options);
+    const std::string path = STOKES_SOURCE_DIR "/tests/kernel/" + name;
+    return Program::from_source(test_device(), name, read_file(path), options);
 }
 
 }  // namespace stokes
