@@ -14,8 +14,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Turned and moved so that no coordinate is round.
 glm::dmat4 askew() {
     const glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1.0, 2.0, -0.5)));
@@ -78,28 +76,28 @@ TEST_CASE("A box is closed; its mean curvature is a quarter of pi times its twel
     CHECK(box.rim_edges == 0);
     CHECK(box.area_mm2 == Approx(52).epsilon(1e-5));
     CHECK(box.volume_mm3 == Approx(24).epsilon(1e-5));
-    CHECK(box.mean_curvature_mm == Approx(4 * (2 + 3 + 4) * pi / 4).epsilon(1e-5));  // 90 degrees / 2 each
+    CHECK(box.mean_curvature_mm == Approx(4 * (2 + 3 + 4) * M_PI / 4).epsilon(1e-5));  // 90 degrees / 2 each
 }
 
 TEST_CASE("The mean curvature of a ball tends to 4 pi R, of a cylinder to pi h + pi^2 R") {
-    CHECK(topology_of({make_sphere(10.0, 256)}).mean_curvature_mm == Approx(4 * pi * 10.0).epsilon(1e-3));
+    CHECK(topology_of({make_sphere(10.0, 256)}).mean_curvature_mm == Approx(4 * M_PI * 10.0).epsilon(1e-3));
     // The side: h 2 pi R / (2 R); the two rims: 2 pi R each, bent by 90 degrees.
-    const double cylinder = pi * 7.0 + pi * pi * 5.0;
+    const double cylinder = M_PI * 7.0 + M_PI * M_PI * 5.0;
     CHECK(topology_of({make_cylinder(5.0, 7.0, 512)}).mean_curvature_mm == Approx(cylinder).epsilon(1e-4));
 }
 
 TEST_CASE("Inside out, volume and mean curvature change their signs") {
     const BodyTopology ball = topology_of({inside_out(make_sphere(10.0, 256))});
     CHECK(ball.kind == BodyKind::closed);
-    CHECK(ball.volume_mm3 == Approx(-4.0 / 3.0 * pi * 1000.0).epsilon(1e-3));
-    CHECK(ball.mean_curvature_mm == Approx(-4 * pi * 10.0).epsilon(1e-3));
+    CHECK(ball.volume_mm3 == Approx(-4.0 / 3.0 * M_PI * 1000.0).epsilon(1e-3));
+    CHECK(ball.mean_curvature_mm == Approx(-4 * M_PI * 10.0).epsilon(1e-3));
 }
 
 TEST_CASE("A hollow ball is closed: volumes and areas add up, the cavity bends the other way") {
     const BodyTopology shell = topology_of({make_sphere(10.0, 128), inside_out(make_sphere(9.0, 128))});
     CHECK(shell.kind == BodyKind::closed);
-    CHECK(shell.volume_mm3 == Approx(4.0 / 3.0 * pi * (1000.0 - 729.0)).epsilon(5e-3));
-    CHECK(shell.mean_curvature_mm == Approx(4 * pi * (10.0 - 9.0)).epsilon(1e-3));
+    CHECK(shell.volume_mm3 == Approx(4.0 / 3.0 * M_PI * (1000.0 - 729.0)).epsilon(5e-3));
+    CHECK(shell.mean_curvature_mm == Approx(4 * M_PI * (10.0 - 9.0)).epsilon(1e-3));
 }
 
 TEST_CASE("Vertices are welded by place, in one mesh and between meshes") {
@@ -111,7 +109,7 @@ TEST_CASE("Vertices are welded by place, in one mesh and between meshes") {
     const BodyTopology both = topology_of({lower, upper});
     CHECK(both.kind == BodyKind::closed);
     CHECK(both.volume_mm3 == Approx(24));
-    CHECK(both.mean_curvature_mm == Approx(9 * pi));
+    CHECK(both.mean_curvature_mm == Approx(9 * M_PI));
 }
 
 TEST_CASE("Zero and minus zero are one place, in meshes too large to be mended") {
@@ -134,8 +132,8 @@ TEST_CASE("Zero and minus zero are one place, in meshes too large to be mended")
 }
 
 TEST_CASE("A box of six separately placed rectangles is closed, though their corners differ by roundings") {
-    const glm::dmat4 x = glm::rotate(glm::dmat4(1.0), pi / 2, glm::dvec3(1, 0, 0));
-    const glm::dmat4 z = glm::rotate(glm::dmat4(1.0), pi / 2, glm::dvec3(0, 0, 1));
+    const glm::dmat4 x = glm::rotate(glm::dmat4(1.0), M_PI / 2, glm::dvec3(1, 0, 0));
+    const glm::dmat4 z = glm::rotate(glm::dmat4(1.0), M_PI / 2, glm::dvec3(0, 0, 1));
     const glm::dmat4 side = glm::translate(glm::dmat4(1.0), glm::dvec3(0, 1.1, 0));
     std::vector<Mesh> faces;
     for (const glm::dmat4& turn : {glm::dmat4(1.0), x, x * x, x * x * x, z, z * z * z})
@@ -143,7 +141,7 @@ TEST_CASE("A box of six separately placed rectangles is closed, though their cor
     const BodyTopology box = topology_of(faces);
     CHECK(box.kind == BodyKind::closed);
     CHECK(box.volume_mm3 == Approx(2.2 * 2.2 * 2.2).epsilon(1e-5));
-    CHECK(box.mean_curvature_mm == Approx(3 * pi * 2.2).epsilon(1e-5));
+    CHECK(box.mean_curvature_mm == Approx(3 * M_PI * 2.2).epsilon(1e-5));
     faces.pop_back();
     const BodyTopology five = topology_of(faces);
     CHECK(five.kind == BodyKind::open);
@@ -160,7 +158,7 @@ TEST_CASE("A gap without width, where a triangle without height was dropped, lea
     box.triangles.push_back({middle, t.y, t.z});
     const BodyTopology topology = topology_of({box});
     CHECK(topology.kind == BodyKind::closed);
-    CHECK(topology.mean_curvature_mm == Approx(9 * pi).epsilon(1e-5));
+    CHECK(topology.mean_curvature_mm == Approx(9 * M_PI).epsilon(1e-5));
     box.positions_mm.back() += glm::vec3(0.0F, 0.01F, 0.0F);
     CHECK(topology_of({box}).kind == BodyKind::open);
 }
@@ -170,7 +168,7 @@ TEST_CASE("Boxes that touch along an edge or a face are closed, each with its ow
     for (const glm::dvec3& by : {glm::dvec3(2, 2, 0), glm::dvec3(2, 0, 0)}) {
         const BodyTopology both = topology_of({box, lifted(box, by)});
         CHECK(both.kind == BodyKind::closed);
-        CHECK(both.mean_curvature_mm == Approx(2 * 6 * pi));
+        CHECK(both.mean_curvature_mm == Approx(2 * 6 * M_PI));
     }
 }
 
