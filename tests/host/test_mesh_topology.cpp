@@ -8,6 +8,7 @@
 #include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
 using Catch::Matchers::Contains;
@@ -22,15 +23,6 @@ glm::dmat4 askew() {
 
 Mesh moved(Mesh mesh, const glm::dmat4& transform) {
     transform_mesh(mesh, transform);
-    return mesh;
-}
-
-Mesh lifted(Mesh mesh, const glm::dvec3& by_mm) {
-    return moved(std::move(mesh), glm::translate(glm::dmat4(1.0), by_mm));
-}
-
-Mesh inside_out(Mesh mesh) {
-    for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
     return mesh;
 }
 
@@ -49,18 +41,12 @@ Mesh unwelded(const Mesh& mesh) {
 Scene scene_of(const std::vector<Mesh>& meshes) {
     Scene scene;
     scene.file = "s.json";
-    scene.body_count = 1;
     Material material;
     material.kind = MaterialKind::translucent;
     material.medium = 0;
     scene.materials = {material};
-    for (const Mesh& mesh : meshes) {
-        Shape shape;
-        shape.name = "thing " + std::to_string(scene.shapes.size());
-        shape.material = shape.body = 0;
-        shape.mesh = mesh;
-        scene.shapes.push_back(shape);
-    }
+    for (const Mesh& mesh : meshes) add_shape(scene, "thing " + std::to_string(scene.shapes.size()), 0, mesh).body = 0;
+    scene.body_count = 1;
     return scene;
 }
 
@@ -87,14 +73,14 @@ TEST_CASE("The mean curvature of a ball tends to 4 pi R, of a cylinder to pi h +
 }
 
 TEST_CASE("Inside out, volume and mean curvature change their signs") {
-    const BodyTopology ball = topology_of({inside_out(make_sphere(10.0, 256))});
+    const BodyTopology ball = topology_of({turned_over(make_sphere(10.0, 256))});
     CHECK(ball.kind == BodyKind::closed);
     CHECK(ball.volume_mm3 == Approx(-4.0 / 3.0 * M_PI * 1000.0).epsilon(1e-3));
     CHECK(ball.mean_curvature_mm == Approx(-4 * M_PI * 10.0).epsilon(1e-3));
 }
 
 TEST_CASE("A hollow ball is closed: volumes and areas add up, the cavity bends the other way") {
-    const BodyTopology shell = topology_of({make_sphere(10.0, 128), inside_out(make_sphere(9.0, 128))});
+    const BodyTopology shell = topology_of({make_sphere(10.0, 128), turned_over(make_sphere(9.0, 128))});
     CHECK(shell.kind == BodyKind::closed);
     CHECK(shell.volume_mm3 == Approx(4.0 / 3.0 * M_PI * (1000.0 - 729.0)).epsilon(5e-3));
     CHECK(shell.mean_curvature_mm == Approx(4 * M_PI * (10.0 - 9.0)).epsilon(1e-3));
@@ -166,7 +152,7 @@ TEST_CASE("A gap without width, where a triangle without height was dropped, lea
 TEST_CASE("Boxes that touch along an edge or a face are closed, each with its own edges") {
     const Mesh box = make_box({2, 2, 2});
     for (const glm::dvec3& by : {glm::dvec3(2, 2, 0), glm::dvec3(2, 0, 0)}) {
-        const BodyTopology both = topology_of({box, lifted(box, by)});
+        const BodyTopology both = topology_of({box, moved(box, by)});
         CHECK(both.kind == BodyKind::closed);
         CHECK(both.mean_curvature_mm == Approx(2 * 6 * M_PI));
     }
@@ -181,7 +167,7 @@ TEST_CASE("Triangles without area are ignored") {
 }
 
 TEST_CASE("A triangle too few or the wrong way round opens a mesh, and the place is told") {
-    Mesh box = lifted(make_box({2, 2, 2}), {10, 0, 0});
+    Mesh box = moved(make_box({2, 2, 2}), {10, 0, 0});
     box.triangles.erase(box.triangles.begin() + 2);  // of +x: 1, 3, 7
     const BodyTopology hole = topology_of({box});
     CHECK(hole.kind == BodyKind::open);
@@ -199,15 +185,15 @@ TEST_CASE("Sheets in one plane that face one way are flat, anywhere and however 
     CHECK(topology_of(
               {moved(make_rectangle(4, 6), glm::translate(glm::dmat4(1.0), glm::dvec3(9000, 7000, 100)) * askew())})
               .kind == BodyKind::flat);
-    const BodyTopology two = topology_of({make_rectangle(4, 6), lifted(make_disk(1.0), {10, 0, 0})});
+    const BodyTopology two = topology_of({make_rectangle(4, 6), moved(make_disk(1.0), {10, 0, 0})});
     CHECK(two.kind == BodyKind::flat);
     CHECK(two.area_mm2 == Approx(24 + mesh_area_mm2(make_disk(1.0))));
     CHECK(two.mean_curvature_mm == 0.0);
 }
 
 TEST_CASE("Steps, bends and sheets that face both ways are not flat") {
-    CHECK(topology_of({make_rectangle(4, 6), lifted(make_rectangle(4, 6), {9, 0.01, 0})}).kind == BodyKind::open);
-    CHECK(topology_of({make_rectangle(4, 6), lifted(inside_out(make_rectangle(1, 1)), {9, 0, 0})}).kind ==
+    CHECK(topology_of({make_rectangle(4, 6), moved(make_rectangle(4, 6), {9, 0.01, 0})}).kind == BodyKind::open);
+    CHECK(topology_of({make_rectangle(4, 6), moved(turned_over(make_rectangle(1, 1)), {9, 0, 0})}).kind ==
           BodyKind::open);
     Mesh bent = make_rectangle(4, 6);
     bent.positions_mm[2].y = 0.01F;
@@ -233,16 +219,16 @@ TEST_CASE("Thickness: of a sheet its own, of a ball and a rod the diameter, of a
     CHECK(thickness_of({moved(make_box({40, 3, 50}), askew())}) == Approx(3).epsilon(1e-5));
     CHECK(thickness_of({moved(make_sphere(10.0), askew())}) == Approx(20).epsilon(2e-3));
     CHECK(thickness_of({moved(make_cylinder(2.0, 80.0, 128), askew())}) == Approx(4).epsilon(2e-3));
-    CHECK(thickness_of({make_sphere(10.0), inside_out(make_sphere(9.0))}) == Approx(1).epsilon(0.05));
+    CHECK(thickness_of({make_sphere(10.0), turned_over(make_sphere(9.0))}) == Approx(1).epsilon(0.05));
     CHECK(thickness_of({make_box({7, 7, 7})}) == Approx(7));
     const Mesh sheet = make_rectangle(4, 6);
-    CHECK(thickness_of({sheet, inside_out(sheet)}) == Approx(0).margin(1e-5));
+    CHECK(thickness_of({sheet, turned_over(sheet)}) == Approx(0).margin(1e-5));
 }
 
 TEST_CASE("Thickness: without limit where there is no other side") {
     CHECK(std::isinf(thickness_of({make_rectangle(4, 6)})));
-    CHECK(std::isinf(thickness_of({inside_out(make_sphere(10.0))})));
-    CHECK(thickness_of({make_rectangle(4, 6), lifted(inside_out(make_rectangle(4, 6)), {0, -2, 0})}) == Approx(2));
+    CHECK(std::isinf(thickness_of({turned_over(make_sphere(10.0))})));
+    CHECK(thickness_of({make_rectangle(4, 6), moved(turned_over(make_rectangle(4, 6)), {0, -2, 0})}) == Approx(2));
     CHECK(std::isinf(thickness_of({})));
 }
 
@@ -259,8 +245,8 @@ TEST_CASE("Walking needs closed or flat bodies") {
     box.triangles.resize(2);  // -x
     box.triangles.push_back({1, 3, 7});
     CHECK_THAT(error({box}), Contains(expects + "7 edges without a neighbour, one at ("));
-    CHECK(error({inside_out(make_sphere(3.0))}) == expects + "one that faces inward");
-    CHECK(error({make_rectangle(1, 2), inside_out(make_rectangle(1, 2))}) == expects + "one without a volume");
+    CHECK(error({turned_over(make_sphere(3.0))}) == expects + "one that faces inward");
+    CHECK(error({make_rectangle(1, 2), turned_over(make_rectangle(1, 2))}) == expects + "one without a volume");
 }
 
 TEST_CASE("Walking asks nothing of bodies without subsurface light") {

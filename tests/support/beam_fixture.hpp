@@ -10,6 +10,7 @@
 #include "tests/support/half_space.hpp"
 #include "tests/support/photon_passes.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/test_scenes.hpp"
 
 namespace stokes {
 
@@ -84,12 +85,7 @@ inline Scene beam_scene(const Material16& m, const Mesh& mesh, double mu) {
     material.fluorescent_fraction = m.fraction;
     material.fresnel = m.fresnel;
     scene.materials = {material};
-    Shape shape;
-    shape.name = "body";
-    shape.material = 0;
-    shape.body = scene.body_count++;
-    shape.mesh = mesh;
-    scene.shapes = {shape};
+    add_shape(scene, "body", 0, mesh);
     Light beam;
     beam.name = "beam";
     beam.kind = LightKind::beam;
