@@ -127,7 +127,7 @@ void add_probe_command(CLI::App& app) {
                       "walk: fluorescence at the first collision only, as the other models have it");
     command->add_option("--lambda", options->lambda_nm, "Wavelength of the beam [nm]; default 365")
         ->type_name("NM")
-        ->check(CLI::Range(300, 830));
+        ->check(CLI::Range(first_lambda_nm, last_lambda_nm));
     command->add_option("--angle", settings.angle_deg, "Angle of incidence [deg]; default 0")
         ->type_name("DEG")
         ->check(number_in(0.0, 89.9));
@@ -139,10 +139,10 @@ void add_probe_command(CLI::App& app) {
         ->check(CLI::Range(1, 50));
     command->add_option("--lambda-min", options->lambda_min_nm, "The first of them; default: the scene's, else 300")
         ->type_name("NM")
-        ->check(CLI::Range(300, 830));
+        ->check(CLI::Range(first_lambda_nm, last_lambda_nm));
     command->add_option("--lambda-max", options->lambda_max_nm, "Their end; default: the scene's, else 780")
         ->type_name("NM")
-        ->check(CLI::Range(300, 830));
+        ->check(CLI::Range(first_lambda_nm, last_lambda_nm));
     command->add_option("--bins", settings.bins, "Bins of distance from the beam; default 40")
         ->check(CLI::Range(2, 10000));
     command->add_option("--r-max", options->r_max_mm, "End of the last of them [mm]; default: from the material")

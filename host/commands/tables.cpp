@@ -11,7 +11,7 @@
 #include "host/core/error.hpp"
 #include "host/render/transport/green_walk.hpp"
 #include "host/scene/readers/scene_reader.hpp"
-#include "host/subsurface/power_table_json.hpp"
+#include "host/subsurface/power_table.hpp"
 
 namespace stokes {
 namespace {

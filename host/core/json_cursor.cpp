@@ -189,12 +189,22 @@ std::size_t JsonCursor::choice(const std::vector<std::string>& words) const {
     fail_expected(quoted_list(words));
 }
 
-glm::dvec3 JsonCursor::vector(const NumberRange& range) const {
-    if (!is(JsonValue::Type::array) || value_->items.size() != 3) fail_expected("an array of 3 numbers");
-    glm::dvec3 result(0.0);
-    int axis = 0;
-    for (const JsonCursor& item : items()) result[axis++] = item.number(range);
+std::vector<double> JsonCursor::numbers(const NumberRange& range, std::size_t count) const {
+    if (!is(JsonValue::Type::array) || (count != 0 && value_->items.size() != count))
+        fail_expected(count == 0 ? "an array of numbers" : fmt::format("an array of {} numbers", count));
+    std::vector<double> result;
+    result.reserve(value_->items.size());
+    for (const JsonValue& item : value_->items) {
+        if (item.type != JsonValue::Type::number || !range.contains(item.number))
+            items()[result.size()].fail_expected("a number " + range.text());
+        result.push_back(item.number);
+    }
     return result;
+}
+
+glm::dvec3 JsonCursor::vector(const NumberRange& range) const {
+    const std::vector<double> xyz = numbers(range, 3);
+    return {xyz[0], xyz[1], xyz[2]};
 }
 
 glm::dvec3 JsonCursor::direction() const {

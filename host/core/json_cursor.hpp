@@ -73,6 +73,8 @@ class JsonCursor {
     const std::string& name() const;
     // One of these words; returns its index.
     std::size_t choice(const std::vector<std::string>& words) const;
+    // count numbers; any number of them where it is 0.
+    std::vector<double> numbers(const NumberRange& range, std::size_t count = 0) const;
     glm::dvec3 vector(const NumberRange& range = coordinate_range) const;
     // A vector scaled to length 1; a zero vector is an error.
     glm::dvec3 direction() const;

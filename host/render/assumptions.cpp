@@ -13,7 +13,6 @@
 namespace stokes {
 namespace {
 
-constexpr int first_emission_nm = 300, last_emission_nm = 830;
 constexpr double opaque_mean_free_paths = 3.0;
 constexpr double largest_relative_curvature = 1.0;
 
@@ -107,7 +106,7 @@ std::vector<std::string> model_remarks(const Scene& scene) {
     std::vector<std::string> lines;
     if (scene.render.transport != Transport::paper) return lines;
     for (const Fluorophore& fluorophore : scene.fluorophores) {
-        const double gain = fluorophore.conversion * fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
+        const double gain = fluorophore.conversion * fluorophore.emission.sum_1nm();
         if (gain > 1.0)
             lines.push_back(fmt::format(
                 "{}: fluorophores.{}: emits up to {:.3g} times what it takes up (conversion_per_nm times the "

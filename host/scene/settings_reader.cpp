@@ -23,8 +23,10 @@ RenderSettings read_render_settings(const JsonCursor& render) {
     if (const auto radius = render.find("radius_mm")) s.radius_mm = radius->number(length_range);
     s.seed =
         static_cast<std::uint32_t>(render.integer_or("seed", s.seed, 0, std::numeric_limits<std::uint32_t>::max()));
-    s.lambda_min_nm = static_cast<int>(render.integer_or("lambda_min_nm", s.lambda_min_nm, 300, 830));
-    s.lambda_max_nm = static_cast<int>(render.integer_or("lambda_max_nm", s.lambda_max_nm, 300, 830));
+    s.lambda_min_nm =
+        static_cast<int>(render.integer_or("lambda_min_nm", s.lambda_min_nm, first_lambda_nm, last_lambda_nm));
+    s.lambda_max_nm =
+        static_cast<int>(render.integer_or("lambda_max_nm", s.lambda_max_nm, first_lambda_nm, last_lambda_nm));
     if (const auto sampling = render.find("sampling"))
         s.sampling = static_cast<Sampling>(sampling->choice(sampling_words));
     if (const auto wavelengths = render.find("wavelengths"))

@@ -107,8 +107,8 @@ class MapBench {
         : setting_(setting),
           slots_(setting.pick(1u << 15, 1u << 20, 1u << 20)),
           edge_(setting.pick(64u, 512u, 512u)),
-          radius_mm_(static_cast<float>(
-              std::sqrt(found_per_query * sheet_mm * sheet_mm / (std::acos(-1.0) * slots_ * 7.0 / 8.0)))),
+          radius_mm_(
+              static_cast<float>(std::sqrt(found_per_query * sheet_mm * sheet_mm / (M_PI * slots_ * 7.0 / 8.0)))),
           photons_(make_photons(slots_, clustered, radius_mm_)),
           points_(make_points(edge_)),
           team_(setting.threads),

@@ -12,8 +12,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 const std::string base = R"({
   "format": "stokes-scene", "version": 1, "transport": "paper",
   "render": {"passes": 4, "photons_per_pass": 1000, "alpha": 0.5, "radius_mm": 2, "seed": 9},
@@ -241,11 +239,11 @@ TEST_CASE("The flux of an emitter sums to its power, or to pi area radiance") {
 
     const Scene radiance = scene_with("\"power_W\": 5", "\"radiance_W_m2_sr\": 7");
     const double area_m2 = mesh_area_mm2(radiance.shapes[1].mesh) * 1e-6;
-    CHECK(area_m2 == Approx(pi * 1e-4).epsilon(1e-3));
-    CHECK(radiance.lights[0].flux.sum_1nm(300, 780) == Approx(pi * area_m2 * 7));
+    CHECK(area_m2 == Approx(M_PI * 1e-4).epsilon(1e-3));
+    CHECK(radiance.lights[0].flux.sum_1nm(300, 780) == Approx(M_PI * area_m2 * 7));
 
     const Scene absolute = scene_with("\"power_W\": 5", "\"radiance_scale_W_m2_sr_nm\": 3");
-    CHECK(absolute.lights[0].flux.at(400) == Approx(pi * area_m2 * 3 * 2));
+    CHECK(absolute.lights[0].flux.at(400) == Approx(M_PI * area_m2 * 3 * 2));
 
     const Scene narrow = scene_with("\"seed\": 9", "\"seed\": 9, \"lambda_min_nm\": 380, \"lambda_max_nm\": 399");
     CHECK(narrow.lights[0].flux.sum_1nm(380, 399) == Approx(5.0));
@@ -284,7 +282,7 @@ TEST_CASE("Beams carry irradiance times their cross-section") {
     CHECK(round.shape == -1);
     CHECK(disk.shapes.size() == 1);
     CHECK(round.direction == glm::dvec3(0, -1, 0));
-    CHECK(round.flux.sum_1nm(300, 780) == Approx(10 * pi * 4e-4));
+    CHECK(round.flux.sum_1nm(300, 780) == Approx(10 * M_PI * 4e-4));
     CHECK(glm::length(round.half_u_mm) == Approx(20));
     CHECK(glm::length(round.half_v_mm) == Approx(20));
 

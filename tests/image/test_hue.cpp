@@ -7,6 +7,7 @@
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/triangle_meshes.hpp"
 
 using namespace stokes;
 
@@ -66,8 +67,7 @@ std::vector<SeenPoint> seen_points(const Scene& scene) {
         if (hit.triangle == STOKES_NONE) continue;
         const Triangle& t = triangles[hit.triangle];
         points.back().shape = static_cast<int>(t.shape);
-        points.back().normal =
-            glm::normalize(glm::cross(glm::dvec3(t.e1x, t.e1y, t.e1z), glm::dvec3(t.e2x, t.e2y, t.e2z)));
+        points.back().normal = normal_of(t);
     }
     return points;
 }

@@ -40,9 +40,7 @@ class Bench {
         double area = 0.0;
         glm::dvec3 centre(0.0);
         for (std::uint32_t t = 0; t < light.triangle_count; ++t) {
-            const Triangle& tri = triangles_[light.first_triangle + t];
-            area += 0.5 * glm::length(
-                              glm::cross(glm::dvec3(tri.e1x, tri.e1y, tri.e1z), glm::dvec3(tri.e2x, tri.e2y, tri.e2z)));
+            area += area_of(triangles_[light.first_triangle + t]);
             areas_.push_back(static_cast<float>(area));
         }
         for (const glm::vec3& p : mesh.positions_mm)

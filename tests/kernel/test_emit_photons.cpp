@@ -28,10 +28,6 @@ std::vector<Triangle> triangles() {
             make_triangle({5, 0, 0}, {5, 4, 0}, {5, 0, 2}), make_triangle({0, 5, 0}, {0, 5, 2}, {-2, 7, 0})};
 }
 
-double area_of(const Triangle& t) {
-    return 0.5 * glm::length(glm::cross(glm::dvec3(t.e1x, t.e1y, t.e1z), glm::dvec3(t.e2x, t.e2y, t.e2z)));
-}
-
 std::vector<LightRecord> lights() {
     std::vector<LightRecord> records(5);
     double cumulative = 0.0;
@@ -186,8 +182,8 @@ std::size_t triangle_below(const Ray& ray, double& u, double& v) {
     const std::vector<Triangle> all = triangles();
     for (std::size_t i = 1; i < all.size(); ++i) {
         const Triangle& t = all[i];
-        const glm::dvec3 n = normal_of(t), e1(t.e1x, t.e1y, t.e1z), e2(t.e2x, t.e2y, t.e2z);
-        const glm::dvec3 p = origin_of(ray) - double(offset_mm) * n - glm::dvec3(t.v0x, t.v0y, t.v0z);
+        const glm::dvec3 n = normal_of(t), e1 = e1_of(t), e2 = e2_of(t);
+        const glm::dvec3 p = origin_of(ray) - double(offset_mm) * n - v0_of(t);
         if (std::abs(glm::dot(p, n)) > 2e-6) continue;
         const double size = glm::dot(glm::cross(e1, e2), n);
         u = glm::dot(glm::cross(p, e2), n) / size;

@@ -11,8 +11,6 @@ using namespace stokes;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Materials of the tests, by index; reflectances are in the row of the same number.
 enum : std::uint32_t { black, grey, white, plain_translucent, surface_fluorescent, smooth_translucent };
 
@@ -194,7 +192,7 @@ Expected expected_light(const Seen& seen, const std::vector<Photon>& photons, do
     }
     const PassConstants pass = pass_constants();
     for (int k = 0; k < 16; ++k) {
-        const double radiance = sum * spectrum(k) * reflectance(seen.material, k) / (pi * pi * radius * radius);
+        const double radiance = sum * spectrum(k) * reflectance(seen.material, k) / (M_PI * M_PI * radius * radius);
         result.x += radiance * pass.to_x[k];
         result.y += radiance * pass.to_y[k];
         result.z += radiance * pass.to_z[k];
@@ -339,7 +337,7 @@ TEST_CASE("uniform photons on a plane give radiance flux / (pi area)", "[gather]
     double spectrum_sum = 0.0, mean = 0.0;
     for (int k = 0; k < 16; ++k) spectrum_sum += spectrum(k);
     for (const FilmValue& value : bench.film()) mean += value.x / static_cast<double>(seen.size());
-    CHECK(mean == Approx(80000.0 / 100.0 / pi * spectrum_sum).epsilon(4.0 / std::sqrt(4000.0 * 20.0)));
+    CHECK(mean == Approx(80000.0 / 100.0 / M_PI * spectrum_sum).epsilon(4.0 / std::sqrt(4000.0 * 20.0)));
 }
 
 TEST_CASE("materials see their own maps", "[gather][tiny]") {
@@ -351,8 +349,8 @@ TEST_CASE("materials see their own maps", "[gather][tiny]") {
     bench.run();
     double white_x = 0.0, grey_x = 0.0;
     for (int k = 0; k < 16; ++k) {
-        white_x += 2.0 * spectrum(k) / (pi * pi * 0.25);
-        grey_x += 2.0 * spectrum(k) * reflectance(grey, k) / (pi * pi * 0.25);
+        white_x += 2.0 * spectrum(k) / (M_PI * M_PI * 0.25);
+        grey_x += 2.0 * spectrum(k) * reflectance(grey, k) / (M_PI * M_PI * 0.25);
     }
     const double smooth_x = white_x * static_cast<double>(exit_scale);
     const double expected[4][6] = {{0, 0, 0, white_x, white_x, smooth_x},
@@ -383,7 +381,7 @@ TEST_CASE("light does not come through a wall, round an edge or from a step", "[
     Bench lit(seen, {{{0.1, 0.0, 0.24}, up}, {{0.5, 0.5, 0.0}, glm::normalize(glm::dvec3(1.5, 0.0, 1.0))}}, 1.0f);
     lit.run();
     double expected = 0.0;
-    for (int k = 0; k < 16; ++k) expected += 2.0 * spectrum(k) / (pi * pi);
+    for (int k = 0; k < 16; ++k) expected += 2.0 * spectrum(k) / (M_PI * M_PI);
     CHECK(lit.x(STOKES_MAP_SURFACE, 0) == Approx(expected).epsilon(1e-5));
 }
 
@@ -397,7 +395,7 @@ TEST_CASE("the faces of a regular prism treat each other's photons alike at ever
             const glm::dvec3 u = glm::normalize(glm::cross(axis, other)), v = glm::cross(axis, u);
             std::vector<glm::dvec3> normals;
             for (int i = 0; i < sides; ++i) {
-                const double angle = 2.0 * pi * i / sides;
+                const double angle = 2.0 * M_PI * i / sides;
                 normals.push_back(std::cos(angle) * u + std::sin(angle) * v);
             }
             // The edge of faces a and b lies at a + b scaled to its distance; in order of edges, 10 mm apart.
@@ -416,7 +414,7 @@ TEST_CASE("the faces of a regular prism treat each other's photons alike at ever
             Bench bench(seen, photons, 1.0f);
             bench.run();
             const std::vector<FilmValue> film = bench.film();
-            const bool counts = std::cos(2.0 * pi / sides) > STOKES_GATHER_MIN_COSINE;
+            const bool counts = std::cos(2.0 * M_PI / sides) > STOKES_GATHER_MIN_COSINE;
             CAPTURE(sides);
             for (std::size_t i = 0; i < seen.size(); ++i)
                 REQUIRE((film[STOKES_MAP_SURFACE * seen.size() + i].x > 0.0f) == counts);
@@ -434,7 +432,7 @@ TEST_CASE("emitters shine from their front, beside what they reflect; passes add
     double direct = 0.0, reflected = 0.0;
     for (int k = 0; k < 16; ++k) {
         direct += emitted(k);
-        reflected += spectrum(k) / (pi * pi);
+        reflected += spectrum(k) / (M_PI * M_PI);
     }
     for (int pass = 1; pass <= 2; ++pass) {
         bench.run();

@@ -2,10 +2,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "host/render/photon_pass.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
@@ -44,25 +43,15 @@ glm::dvec3 block_mean(const FilmImage& image, int component, int left, int top, 
     return sum / static_cast<double>(edge * edge);
 }
 
-// Photons of a pass, as they are stored.
 struct Stored {
     PhotonAccount account;
-    std::array<std::vector<PhotonHead>, STOKES_MAP_COUNT> heads;
-    std::array<std::vector<Flux16>, STOKES_MAP_COUNT> flux;
+    std::array<Deposits, STOKES_MAP_COUNT> maps;
 };
 
 Stored trace(const Scene& scene) {
-    const Device& device = test_device();
-    const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-    const DeviceScene on_device(device, scene);
-    PhotonPass pass(device, scene, on_device, photons, 16);  // small maps: they have to grow
-    pass.prepare(3, photons);
-    Stored stored;
-    stored.account = pass.trace();
-    for (std::size_t m = 0; m < pass.maps().size(); ++m) {
-        stored.heads[m] = pass.maps()[m].heads().download(pass.maps()[m].used());
-        stored.flux[m] = pass.maps()[m].flux().download(pass.maps()[m].used());
-    }
+    PhotonPasses passes(scene);
+    Stored stored{passes.trace(3), {}};
+    for (std::size_t m = 0; m < stored.maps.size(); ++m) stored.maps[m] = passes.deposits(m);
     return stored;
 }
 
@@ -128,14 +117,15 @@ TEST_CASE("photons are the same, but for those that are not stored", "[direct_li
         const Stored rest = trace(scene);
         for (std::size_t m = 0; m < STOKES_MAP_COUNT; ++m) {
             CAPTURE(m);
-            CHECK(same_end(all.heads[m], rest.heads[m]));
-            CHECK(same_end(all.flux[m], rest.flux[m]));
-            if (m != STOKES_MAP_SURFACE) CHECK(all.heads[m].size() == rest.heads[m].size());
+            CHECK(same_end(all.maps[m].heads, rest.maps[m].heads));
+            CHECK(same_end(all.maps[m].flux, rest.maps[m].flux));
+            if (m != STOKES_MAP_SURFACE) CHECK(all.maps[m].heads.size() == rest.maps[m].heads.size());
         }
-        const std::size_t direct = all.heads[STOKES_MAP_SURFACE].size() - rest.heads[STOKES_MAP_SURFACE].size();
+        const std::size_t direct =
+            all.maps[STOKES_MAP_SURFACE].heads.size() - rest.maps[STOKES_MAP_SURFACE].heads.size();
         CHECK(direct > 1000);
         CHECK(direct < 8192);
-        CHECK(rest.heads[STOKES_MAP_SURFACE].size() > 500);
+        CHECK(rest.maps[STOKES_MAP_SURFACE].heads.size() > 500);
         CHECK(all.account.deposits - rest.account.deposits == direct);
         CHECK(all.account.fates == rest.account.fates);
         CHECK(all.account.rays == rest.account.rays);
@@ -145,7 +135,7 @@ TEST_CASE("photons are the same, but for those that are not stored", "[direct_li
         }
         double lacking = 0.0;
         for (std::size_t i = 0; i < direct; ++i)
-            for (const float v : all.flux[STOKES_MAP_SURFACE][i].v) lacking += static_cast<double>(v);
+            for (const float v : all.maps[STOKES_MAP_SURFACE].flux[i].v) lacking += static_cast<double>(v);
         CHECK(all.account.energy[7] - rest.account.energy[7] == Approx(lacking).epsilon(1e-4));
     }
 }
@@ -162,10 +152,10 @@ TEST_CASE("where nothing is lit but by lights, the surface map is empty", "[dire
     scene.render.photons_per_pass = 4096;
     scene.render.direct = Direct::rays;
     const Stored stored = trace(scene);
-    for (const auto& heads : stored.heads) CHECK(heads.empty());
+    for (const Deposits& map : stored.maps) CHECK(map.heads.empty());
     CHECK(stored.account.deposits == 0);
     CHECK(stored.account.energy[7] == 0.0);
     CHECK(stored.account.energy[0] > 0.0);
     scene.render.direct = Direct::photons;
-    CHECK(trace(scene).heads[STOKES_MAP_SURFACE].size() > 100);
+    CHECK(trace(scene).maps[STOKES_MAP_SURFACE].heads.size() > 100);
 }

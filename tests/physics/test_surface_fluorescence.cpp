@@ -1,8 +1,6 @@
-#include "host/render/pass_spectra.hpp"
-#include "host/render/photon_pass.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
@@ -54,22 +52,16 @@ std::array<double, 16> emitted_radiance(const Scene& scene, const WavelengthSet&
     return radiance;
 }
 
-// The deposits of a pass, as PhotonPass leaves them, summed over photons: [map][wavelength] [W/nm].
+// The deposits of a pass, summed over photons: [map][wavelength] [W/nm].
 std::array<std::array<double, 16>, STOKES_MAP_COUNT> deposited(const Scene& scene, std::uint32_t pass) {
-    const Device& device = test_device();
-    const DeviceScene on_device(device, scene);
-    const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-    PhotonPass photon_pass(device, scene, on_device, photons, 16);
-    photon_pass.prepare(pass, photons);
-    photon_pass.trace();
-    const PhotonMaps& maps = photon_pass.maps();
+    PhotonPasses passes(scene);
+    passes.trace(pass);
     std::array<std::array<double, 16>, STOKES_MAP_COUNT> sums{};
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        const std::vector<PhotonHead> heads = maps[m].heads().download(maps[m].used());
-        const std::vector<Flux16> flux = maps[m].flux().download(maps[m].used());
-        for (std::size_t i = 0; i < heads.size(); ++i)
-            if (heads[i].normal != STOKES_EMPTY_SLOT)
-                for (std::size_t k = 0; k < 16; ++k) sums[m][k] += static_cast<double>(flux[i].v[k]);
+    for (std::size_t m = 0; m < sums.size(); ++m) {
+        const Deposits deposits = passes.deposits(m);
+        for (std::size_t i = 0; i < deposits.heads.size(); ++i)
+            if (deposits.heads[i].normal != STOKES_EMPTY_SLOT)
+                for (std::size_t k = 0; k < 16; ++k) sums[m][k] += static_cast<double>(deposits.flux[i].v[k]);
     }
     return sums;
 }

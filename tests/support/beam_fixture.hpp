@@ -6,11 +6,11 @@
 #include <cmath>
 #include <vector>
 
-#include "host/render/photon_pass.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/half_space.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/test_scenes.hpp"
 
 namespace stokes {
 
@@ -85,12 +85,7 @@ inline Scene beam_scene(const Material16& m, const Mesh& mesh, double mu) {
     material.fluorescent_fraction = m.fraction;
     material.fresnel = m.fresnel;
     scene.materials = {material};
-    Shape shape;
-    shape.name = "body";
-    shape.material = 0;
-    shape.body = scene.body_count++;
-    shape.mesh = mesh;
-    scene.shapes = {shape};
+    add_shape(scene, "body", 0, mesh);
     Light beam;
     beam.name = "beam";
     beam.kind = LightKind::beam;
@@ -122,15 +117,11 @@ struct Measured {
 };
 
 inline Measured measure(const Scene& scene, std::uint32_t batches, std::uint32_t photons) {
-    const Device& device = test_device();
-    const DeviceScene on_device(device, scene);
-    PhotonPass pass(device, scene, on_device, photons, 16);  // small maps: they have to grow
+    PhotonPasses passes(scene, photons);
     Measured result;
     for (std::uint32_t batch = 0; batch < batches; ++batch) {
-        pass.prepare(test_wavelengths(), batch, photons);
-        const PhotonAccount account = pass.trace();
-        std::array<std::vector<Flux16>, 3> flux;
-        for (std::size_t m = 0; m < 3; ++m) flux[m] = pass.maps()[m].flux().download(pass.maps()[m].used());
+        const PhotonAccount account = passes.trace(test_wavelengths(), batch);
+        const std::array<std::vector<Flux16>, 3> flux = {passes.flux(0), passes.flux(1), passes.flux(2)};
         for (std::size_t i = 0; i < photons; ++i)
             for (std::size_t k = 0; k < wavelengths; ++k) {
                 double sum = i < flux[0].size() ? 0.0 : 1.0;  // reflected by the surface

@@ -5,6 +5,15 @@
 
 namespace stokes {
 
+Material diffuse_material(double reflectance);
+
+// Adds a body of its own.
+Shape& add_shape(Scene& scene, const std::string& name, int material, const Mesh& mesh);
+
+Mesh moved(Mesh mesh, const glm::dvec3& by_mm);
+// The same surface with its front on the other side.
+Mesh turned_over(Mesh mesh);
+
 // A closed sphere of diffuse reflectance that shines inward with radiance 1 W m^-2 sr^-1 nm^-1 at every wavelength, the
 // camera inside. Its radiance is 1 / (1 - reflectance) in every direction.
 Scene furnace_scene(double reflectance);

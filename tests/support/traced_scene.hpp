@@ -10,14 +10,11 @@
 
 #include "host/scene/bvh/bvh_builder.hpp"
 #include "tests/support/device_fixture.hpp"
+#include "tests/support/triangle_meshes.hpp"
 
 namespace stokes {
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
-
-inline glm::dvec3 v0_of(const Triangle& t) { return {t.v0x, t.v0y, t.v0z}; }
-inline glm::dvec3 e1_of(const Triangle& t) { return {t.e1x, t.e1y, t.e1z}; }
-inline glm::dvec3 e2_of(const Triangle& t) { return {t.e2x, t.e2y, t.e2z}; }
 
 inline std::vector<std::string> with_layout(std::vector<std::string> options, const BvhLayout& layout) {
     for (const std::string& option : bvh_kernel_options(layout)) options.push_back(option);

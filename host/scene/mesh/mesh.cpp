@@ -17,12 +17,11 @@ bool is_degenerate(const Mesh& mesh, const glm::uvec3& triangle) {
     const glm::dvec3 a = corner(mesh, triangle.x);
     const glm::dvec3 b = corner(mesh, triangle.y);
     const glm::dvec3 c = corner(mesh, triangle.z);
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
     const glm::dvec3 farthest = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
     const double rounding = FLT_EPSILON * std::max({farthest.x, farthest.y, farthest.z});
     const double longest =
         std::sqrt(std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)}));
-    const double length = glm::length(normal);
+    const double length = 2.0 * glm::length(area_vector_mm2(a, b, c));
     return !(length > rounding * longest && length * length >= FLT_MIN);
 }
 
@@ -55,12 +54,13 @@ Bounds mesh_bounds(const Mesh& mesh) {
     return bounds;
 }
 
+glm::dvec3 area_vector_mm2(const Mesh& mesh, const glm::uvec3& t) {
+    return area_vector_mm2(corner(mesh, t.x), corner(mesh, t.y), corner(mesh, t.z));
+}
+
 double mesh_area_mm2(const Mesh& mesh) {
     double sum = 0.0;
-    for (const glm::uvec3& t : mesh.triangles) {
-        const glm::dvec3 a = corner(mesh, t.x);
-        sum += 0.5 * glm::length(glm::cross(corner(mesh, t.y) - a, corner(mesh, t.z) - a));
-    }
+    for (const glm::uvec3& t : mesh.triangles) sum += glm::length(area_vector_mm2(mesh, t));
     return sum;
 }
 

@@ -15,6 +15,11 @@ struct Bounds {
 
 // Of the vertices; the mesh has at least one.
 Bounds mesh_bounds(const Mesh& mesh);
+// A triangle's area times its normal [mm^2].
+inline glm::dvec3 area_vector_mm2(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return 0.5 * glm::cross(b - a, c - a);
+}
+glm::dvec3 area_vector_mm2(const Mesh& mesh, const glm::uvec3& triangle);
 // Total area of the triangles [mm^2], one side.
 double mesh_area_mm2(const Mesh& mesh);
 // Volume inside a closed mesh [mm^3]; negative when its triangles face inward.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/scene/mesh/mesh.hpp"
+
 namespace stokes {
 namespace {
 
@@ -34,10 +36,9 @@ Body body_of(const Scene& scene, int body) {
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (const Shape& shape : scene.shapes) {
         if (shape.body != body) continue;
-        for (const glm::vec3& p : shape.mesh.positions_mm) {
-            low = glm::min(low, glm::dvec3(p));
-            high = glm::max(high, glm::dvec3(p));
-        }
+        const Bounds bounds = mesh_bounds(shape.mesh);
+        low = glm::min(low, bounds.low_mm);
+        high = glm::max(high, bounds.high_mm);
     }
     const glm::dvec3 middle = 0.5 * (low + high), farthest = glm::max(glm::abs(low), glm::abs(high));
     Body result;

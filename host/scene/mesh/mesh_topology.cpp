@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "host/core/error.hpp"
+#include "host/scene/mesh/mesh.hpp"
 
 namespace stokes {
 namespace {
@@ -91,9 +92,8 @@ Surface surface_of(const Scene& scene, int body) {
         }
         for (const glm::uvec3& t : shape.mesh.triangles) {
             const glm::uvec3 triangle(welded[t.x], welded[t.y], welded[t.z]);
-            const glm::dvec3 a = surface.points[triangle.x];
             const glm::dvec3 area_vector =
-                0.5 * glm::cross(surface.points[triangle.y] - a, surface.points[triangle.z] - a);
+                area_vector_mm2(surface.points[triangle.x], surface.points[triangle.y], surface.points[triangle.z]);
             if (!(glm::dot(area_vector, area_vector) > 0.0)) continue;
             surface.triangles.push_back(triangle);
             surface.area_vectors.push_back(area_vector);

@@ -7,11 +7,9 @@
 namespace stokes {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Corner k of n on a circle about the y axis, counter-clockwise seen from above.
 glm::vec3 on_circle(int k, int n, double radius, double y) {
-    const double angle = 2.0 * pi * k / n;
+    const double angle = 2.0 * M_PI * k / n;
     return glm::vec3(glm::dvec3(radius * std::cos(angle), y, -radius * std::sin(angle)));
 }
 
@@ -86,7 +84,7 @@ Mesh make_sphere(double radius_mm, int segments) {
     const std::uint32_t bottom = add_point(mesh, -radius_mm);
     std::uint32_t below = 0;
     for (int ring = 1; ring < rings; ++ring) {
-        const double angle = pi * ring / rings;
+        const double angle = M_PI * ring / rings;
         const std::uint32_t circle =
             add_circle(mesh, segments, radius_mm * std::sin(angle), -radius_mm * std::cos(angle));
         if (ring == 1) {
@@ -165,7 +163,7 @@ std::vector<Mesh> make_sectors(double radius_mm, double height_mm, int sectors, 
     const int per_sector = (std::max(segments, 3) + sectors - 1) / sectors, n = per_sector * sectors;
     const double start = glm::radians(start_deg);
     const auto rim = [&](int k, double y) {
-        const double angle = start + 2.0 * pi * (k % n) / n;
+        const double angle = start + 2.0 * M_PI * (k % n) / n;
         return glm::vec3(glm::dvec3(radius_mm * std::cos(angle), y, -radius_mm * std::sin(angle)));
     };
     const glm::vec3 top(glm::dvec3(0.0, height_mm, 0.0)), bottom(0.0f);

@@ -8,20 +8,21 @@
 
 #include "host/core/error.hpp"
 #include "host/core/json_cursor.hpp"
-#include "host/scene/readers/spectrum_reader.hpp"
 
 namespace stokes {
 
 template <class Content, Content (*read_content)(const std::string& path)>
 class InputFiles {
   public:
-    // folder: of the scene.
+    // folder: of the scene; paths are relative to it unless absolute.
     explicit InputFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    const std::filesystem::path& folder() const { return folder_; }
 
     // The file named here. Throws InputError at this place of the scene, also where the memory does not
     // suffice.
     const Content& read(const JsonCursor& file) {
-        const std::string path = scene_path(folder_, file.text());
+        const std::string path = (folder_ / file.text()).lexically_normal().string();
         const auto found = contents_.find(path);
         if (found != contents_.end()) return found->second;
         try {

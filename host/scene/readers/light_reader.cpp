@@ -13,7 +13,6 @@
 namespace stokes {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double m2_per_mm2 = 1e-6;
 constexpr NumberRange amount_range{0.0, 1e12, true};
 constexpr const char* built_in_black = "(black)";
@@ -62,7 +61,7 @@ Spectrum emitter_flux(const JsonCursor& light, const Spectrum& spectrum, double 
                       const RenderSettings& render) {
     const std::string unit = light.one_of({"power_W", "radiance_W_m2_sr", "radiance_scale_W_m2_sr_nm"});
     const double amount = light.at(unit).number(amount_range);
-    const double watt_per_radiance = pi * area_mm2 * m2_per_mm2;
+    const double watt_per_radiance = M_PI * area_mm2 * m2_per_mm2;
     if (unit == "power_W") return with_total(light, spectrum, amount, render);
     if (unit == "radiance_W_m2_sr") return with_total(light, spectrum, amount * watt_per_radiance, render);
     with_total(light, spectrum, 1.0, render);
@@ -92,7 +91,7 @@ Light read_beam(const JsonCursor& where, SpectrumReader& spectra, const RenderSe
         light.half_u_mm = radius_mm * frame.u;
         light.half_v_mm = radius_mm * frame.v;
         light.direction = frame.axis;
-        area_mm2 = pi * radius_mm * radius_mm;
+        area_mm2 = M_PI * radius_mm * radius_mm;
     } else {
         where.expect_keys(keys::beam_rectangle);
         const Frame frame = read_frame(where, "direction");

@@ -16,9 +16,6 @@ constexpr NumberRange dipole_eta_range{1.0, largest_dipole_eta};
 constexpr NumberRange sigma_t_range{smallest_sigma_t_per_mm, largest_sigma_t_per_mm};
 constexpr NumberRange scale_range{0.0, 1e6};
 constexpr NumberRange unit_range{0.0, 1.0};
-// Where the renderer may ask for spectra.
-constexpr int first_lambda_nm = 300;
-constexpr int last_lambda_nm = 830;
 
 Medium read_medium(const std::string& name, const JsonCursor& where, SpectrumReader& spectra) {
     where.expect_keys(keys::medium);
@@ -46,7 +43,7 @@ Fluorophore read_fluorophore(const std::string& name, const JsonCursor& where, S
     fluorophore.excitation = spectra.read(where.at("excitation"), Outside::zero, 1.0);
     fluorophore.emission = spectra.read(where.at("emission"), Outside::zero, 1.0);
     fluorophore.conversion = where.number_or("conversion_per_nm", fluorophore.conversion, unit_range);
-    const double emission_sum = fluorophore.emission.sum_1nm(first_lambda_nm, last_lambda_nm);
+    const double emission_sum = fluorophore.emission.sum_1nm();
     if (!(emission_sum > 0.0)) {
         where.at("emission")
             .fail(fmt::format("expected some emission from {} to {} nm, got none at any whole nanometre",

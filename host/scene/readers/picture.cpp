@@ -4,13 +4,13 @@
 #include <png.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csetjmp>
 #include <cstdint>
 #include <cstring>
 #include <new>
 
 #include "host/core/error.hpp"
+#include "host/core/srgb.hpp"
 #include "host/core/text_input.hpp"
 
 namespace stokes {
@@ -90,10 +90,8 @@ bool decode(Decoding& decoding) {
 // Linear values of all samples of this many bits, IEC 61966-2-1.
 std::vector<float> srgb_curve(int bit_depth) {
     std::vector<float> linear(std::size_t{1} << bit_depth);
-    for (std::size_t i = 0; i < linear.size(); ++i) {
-        const double v = static_cast<double>(i) / static_cast<double>(linear.size() - 1);
-        linear[i] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-    }
+    for (std::size_t i = 0; i < linear.size(); ++i)
+        linear[i] = static_cast<float>(srgb_decode(static_cast<double>(i) / static_cast<double>(linear.size() - 1)));
     return linear;
 }
 

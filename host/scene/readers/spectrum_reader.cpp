@@ -58,10 +58,6 @@ void check_maximum(const JsonCursor& where, const Spectrum& spectrum, double max
 
 }  // namespace
 
-std::string scene_path(const std::filesystem::path& folder, const std::string& file) {
-    return (folder / file).lexically_normal().string();
-}
-
 void SpectrumReader::define(const JsonCursor& spectra) {
     for (const auto& [name, value] : spectra.named_members()) named_[name] = read_object(value);
 }
@@ -103,7 +99,7 @@ SpectrumReader::Definition SpectrumReader::read_object(const JsonCursor& where) 
 
 SpectrumReader::Definition SpectrumReader::read_file_column(const JsonCursor& where) {
     where.expect_keys(keys::spectrum_file);
-    const CsvTable& csv = table(where.at("file"));
+    const CsvTable& csv = tables_.read(where.at("file"));
     const JsonCursor column = where.at("column");
     const std::string& name = column.text();
     const double scale = where.number_or("scale", 1.0, value_range);
@@ -115,17 +111,6 @@ SpectrumReader::Definition SpectrumReader::read_file_column(const JsonCursor& wh
     }
     check_maximum(where, spectrum, value_range.high);
     return {std::move(spectrum), read_outside(where)};
-}
-
-const CsvTable& SpectrumReader::table(const JsonCursor& file) {
-    const std::string path = scene_path(folder_, file.text());
-    const auto found = tables_.find(path);
-    if (found != tables_.end()) return found->second;
-    try {
-        return tables_.emplace(path, read_csv(path)).first->second;
-    } catch (const InputError& error) {
-        file.fail(error.what());
-    }
 }
 
 }  // namespace stokes

@@ -8,19 +8,16 @@
 #include <string>
 
 #include "host/core/csv_table.hpp"
-#include "host/core/json_cursor.hpp"
 #include "host/core/spectrum.hpp"
+#include "host/scene/readers/input_files.hpp"
 
 namespace stokes {
 
-// The place of a file that a scene names: relative to the scene's folder unless absolute.
-std::string scene_path(const std::filesystem::path& folder, const std::string& file);
-
 class SpectrumReader {
   public:
-    explicit SpectrumReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit SpectrumReader(std::filesystem::path folder) : tables_(std::move(folder)) {}
 
-    const std::filesystem::path& folder() const { return folder_; }
+    const std::filesystem::path& folder() const { return tables_.folder(); }
 
     // Takes in the scene's "spectra". Throws InputError.
     void define(const JsonCursor& spectra);
@@ -38,10 +35,8 @@ class SpectrumReader {
 
     Definition read_object(const JsonCursor& where);
     Definition read_file_column(const JsonCursor& where);
-    const CsvTable& table(const JsonCursor& file);
 
-    std::filesystem::path folder_;
-    std::map<std::string, CsvTable> tables_;  // by path
+    InputFiles<CsvTable, read_csv> tables_;
     std::map<std::string, Definition> named_;
 };
 
