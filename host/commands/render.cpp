@@ -11,6 +11,7 @@
 #include "host/commands/number_in.hpp"
 #include "host/commands/outputs.hpp"
 #include "host/commands/progress.hpp"
+#include "host/commands/setting_flags.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
 #include "host/image/develop.hpp"
@@ -34,75 +35,13 @@ extern "C" void catch_signal(int signal) {
 }
 
 struct RenderOptions {
-    std::string scene_file, exr_file, png_file, stats_file, kernel_directory, size, transport;
-    std::string reference_file, csv_file, sampling, wavelengths, branches, distances, emission, direct, radii;
-    int passes = 0, every = 0, exits = 0;
+    std::string scene_file, exr_file, png_file, stats_file, kernel_directory, reference_file, csv_file;
+    int every = 0;
     DeviceFlags device;
-    std::int64_t photons = 0;
-    std::uint32_t seed = 0;
-    double alpha = 0.0, radius_mm = 0.0, exposure_ev = 0.0, max_memory_gib = 0.0;
-    bool quiet = false, no_tables = false;
+    FlagValues settings;
+    double max_memory_gib = 0.0;
+    bool quiet = false;
 };
-
-// What was given on the command line takes the place of what the scene says.
-void apply(const CLI::App& command, const RenderOptions& options, Scene& scene) {
-    RenderSettings& render = scene.render;
-    if (command.count("--passes")) render.passes = options.passes;
-    if (command.count("--photons")) render.photons_per_pass = options.photons;
-    if (command.count("--seed")) render.seed = options.seed;
-    if (command.count("--alpha")) render.alpha = options.alpha;
-    if (command.count("--radius")) render.radius_mm = options.radius_mm;
-    if (command.count("--transport"))
-        render.transport = static_cast<Transport>(index_of_word(options.transport, transport_words));
-    const auto expect_transport = [&](const std::string& flag, const std::string& expected, bool fits) {
-        if (!fits)
-            throw InputError(fmt::format("{}: expected transport {}, got \"{}\"", flag, expected,
-                                         transport_words[static_cast<std::size_t>(render.transport)]));
-    };
-    if (options.no_tables) {
-        expect_transport("--no-tables", "\"paper\"", render.transport == Transport::paper);
-        render.tables = false;
-    }
-    if (command.count("--sampling")) {
-        render.sampling = static_cast<Sampling>(index_of_word(options.sampling, sampling_words));
-        render.wavelengths.reset();
-        render.branches.reset();
-        render.distances.reset();
-        render.exits.reset();
-        render.emission.reset();
-        render.direct.reset();
-        render.radii.reset();
-    }
-    if (command.count("--wavelengths"))
-        render.wavelengths = static_cast<Wavelengths>(index_of_word(options.wavelengths, wavelengths_words));
-    if (command.count("--branches")) {
-        expect_transport("--branches", "\"paper\" or \"conserving\"", render.transport != Transport::walk);
-        render.branches = static_cast<Branches>(index_of_word(options.branches, branches_words));
-    }
-    if (command.count("--distances")) {
-        expect_transport("--distances", "\"paper\"", render.transport == Transport::paper);
-        if (!render.tables) throw InputError("--distances: expected power tables, got --no-tables");
-        render.distances = static_cast<Distances>(index_of_word(options.distances, distances_words));
-    }
-    if (command.count("--exits")) {
-        expect_transport("--exits", "\"conserving\"", render.transport == Transport::conserving);
-        render.exits = options.exits;
-    }
-    if (command.count("--emission"))
-        render.emission = static_cast<Emission>(index_of_word(options.emission, emission_words));
-    if (command.count("--direct")) render.direct = static_cast<Direct>(index_of_word(options.direct, direct_words));
-    if (command.count("--radii")) render.radii = static_cast<Radii>(index_of_word(options.radii, radii_words));
-    if (command.count("--exposure")) scene.film.exposure_ev = options.exposure_ev;
-    if (command.count("--size")) {
-        char rest = 0;
-        int width = 0, height = 0;
-        if (std::sscanf(options.size.c_str(), "%5dx%5d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
-            width > 16384 || height > 16384)
-            throw InputError("--size: expected WIDTHxHEIGHT in pixels, each 1 to 16384, got \"" + options.size + "\"");
-        scene.film.width = width;
-        scene.film.height = height;
-    }
-}
 
 // Left, top, width, height.
 std::string crop_text(const Crop& crop) {
@@ -135,20 +74,21 @@ Metadata exr_metadata(const Scene& scene, const RenderStats& stats, double expos
 }
 
 RenderStats collect_stats(const Scene& scene, const Device& device, const Renderer& renderer) {
+    const ResolvedSettings settings = resolved(scene.render);
     RenderStats stats;
     stats.scene = scene.file;
     stats.device = device.description().name;
     stats.driver = device.description().platform + " " + device.description().driver;
-    stats.ray_kernel = ray_shape_words[static_cast<std::size_t>(device.ray_shape())];
-    stats.transport = transport_words[static_cast<std::size_t>(scene.render.transport)];
-    stats.tables = scene.render.transport != Transport::walk && scene.render.tables;
-    stats.wavelengths = wavelengths_words[static_cast<std::size_t>(chosen_wavelengths(scene.render))];
-    stats.branches = branches_words[static_cast<std::size_t>(chosen_branches(scene.render))];
-    stats.distances = distances_words[static_cast<std::size_t>(chosen_distances(scene.render))];
-    stats.exits = chosen_exits(scene.render);
-    stats.emission = emission_words[static_cast<std::size_t>(chosen_emission(scene.render))];
-    stats.direct = direct_words[static_cast<std::size_t>(chosen_direct(scene.render))];
-    stats.radii = radii_words[static_cast<std::size_t>(chosen_radii(scene.render))];
+    stats.ray_kernel = word_of(device.ray_shape());
+    stats.transport = word_of(scene.render.transport);
+    stats.tables = settings.tables;
+    stats.wavelengths = word_of(settings.wavelengths);
+    stats.branches = word_of(settings.branches);
+    stats.distances = word_of(settings.distances);
+    stats.exits = settings.exits;
+    stats.emission = word_of(settings.emission);
+    stats.direct = word_of(settings.direct);
+    stats.radii = word_of(settings.radii);
     stats.passes = renderer.passes();
     stats.seed = scene.render.seed;
     stats.width = scene.film.width;
@@ -234,15 +174,14 @@ std::unique_ptr<ErrorCurve> make_curve(const RenderOptions& options, const Film&
     return std::make_unique<ErrorCurve>(options.reference_file, options.csv_file, options.every, film);
 }
 
-void render(const CLI::App& command, const RenderOptions& options) {
+void render(const RenderOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::string> outputs = {options.exr_file, options.png_file, options.stats_file, options.csv_file};
     if (std::all_of(outputs.begin(), outputs.end(), [](const std::string& file) { return file.empty(); }))
         throw InputError("render: expected an output, -o OUT.exr, --png OUT.png, --stats FILE.json or --csv FILE.csv");
     check_outputs(outputs, options.scene_file);
     check_keeps(outputs, options.reference_file, "the reference");
-    Scene scene = read_scene(options.scene_file);
-    apply(command, options, scene);
+    const Scene scene = read_scene(options.scene_file, options.settings);
     if (scene.render.transport == Transport::walk) check_walkable(scene);  // before the device is opened
     const std::unique_ptr<ErrorCurve> curve = make_curve(options, scene.film);
     warn_about_models(scene);
@@ -297,45 +236,8 @@ void add_render_command(CLI::App& app) {
         ->type_name("N")
         ->check(CLI::Range(1, 100000000))
         ->needs(reference);
-    command->add_option("--passes", options->passes, "Passes")->check(CLI::Range(1, 100000000));
-    command->add_option("--photons", options->photons, "Photons per pass")
-        ->check(number_in(1, static_cast<double>(most_photons_per_pass)));
-    command->add_option("--size", options->size, "Picture size in pixels")->type_name("WxH");
-    const auto add_choice = [&](const std::string& flag, std::string& word, const std::vector<std::string>& words,
-                                const std::string& help, const std::string& type = "HOW") {
-        command->add_option(flag, word, help)->type_name(type)->check(word_of(words));
-    };
-    add_choice("--transport", options->transport, transport_words, "How light travels below translucent surfaces",
-               "MODEL");
-    command->add_flag("--no-tables", options->no_tables,
-                      "Model paper: every photon integrates its power itself, in place of the tables");
-    add_choice("--sampling", options->sampling, sampling_words,
-               "Plain samplers, or those with the least noise; default: best", "KIND");
-    add_choice("--wavelengths", options->wavelengths, wavelengths_words,
-               "How a pass draws its wavelengths; default: importance, for transport paper uniform");
-    add_choice("--branches", options->branches, branches_words,
-               "What a photon stores where it enters: one branch, or both; default: both with conserving");
-    add_choice("--distances", options->distances, distances_words,
-               "Transport paper: how far light leaves from its entry, from the power table or where more of it leaves; "
-               "default: importance");
-    command->add_option("--exits", options->exits, "Transport conserving: exit points an entry; default 1")
-        ->type_name("N")
-        ->check(CLI::Range(1, most_exits));
-    add_choice("--emission", options->emission, emission_words,
-               "Where photons start: at random, evenly spread, or also where the camera sees their light; default: "
-               "aimed");
-    add_choice("--direct", options->direct, direct_words,
-               "Light straight from the lights on diffuse surfaces: by photons, or by shadow rays; default: rays");
-    add_choice("--radii", options->radii, radii_words,
-               "Radius of the density estimate: one for the picture, or larger where photons are few; default: one");
-    command->add_option("--seed", options->seed, "Seed of the random numbers");
-    command->add_option("--alpha", options->alpha, "How fast the radius shrinks, 0 to 1; default 2/3")
-        ->check(number_in(1e-6, 1.0));
-    command->add_option("--radius", options->radius_mm, "First radius of the density estimate [mm]")
-        ->check(number_in(1e-6, 1e7));
-    command->add_option("--exposure", options->exposure_ev, "Exposure of the PNG; default: automatic")
-        ->type_name("EV")
-        ->check(number_in(-100.0, 100.0));
+    add_setting_flags(*command, options->settings);
+    add_size_flag(*command, options->settings);
     add_device_flags(*command, options->device);
     command->add_option("--max-memory", options->max_memory_gib, "Device memory to use at most; default: 3/4 of it")
         ->type_name("GiB")
@@ -343,7 +245,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("--kernel-dir", options->kernel_directory, "Read the kernels from here, for development")
         ->check(CLI::ExistingDirectory);
     command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
-    command->callback([command, options] { render(*command, *options); });
+    command->callback([options] { render(*options); });
 }
 
 }  // namespace stokes

@@ -28,11 +28,11 @@ PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene
     buffers_.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count());
     buffers_.photon_flux = Buffer<Flux16>(device, "photon flux of the lights", scene.lights.size());
     buffers_.radiance = Buffer<Flux16>(device, "radiance of the lights", scene.lights.size());
-    buffers_.both_branches =
-        scene.render.transport != Transport::walk && chosen_branches(scene.render) == Branches::both;
-    buffers_.store_direct = chosen_direct(scene.render) == Direct::photons;
-    buffers_.weighted_distances = chosen_distances(scene.render) == Distances::importance;
-    buffers_.exits = static_cast<std::uint32_t>(chosen_exits(scene.render));
+    const ResolvedSettings settings = resolved(scene.render);
+    buffers_.both_branches = settings.branches == Branches::both;
+    buffers_.store_direct = settings.direct == Direct::photons;
+    buffers_.weighted_distances = settings.distances == Distances::importance;
+    buffers_.exits = static_cast<std::uint32_t>(settings.exits);
     const DeviceTables& tables = on_device.tables;
     if (tables.values.size() > 0) resample_ = Program(device, "resample_tables.cl").kernel("resample_table");
     for (const auto& [eta, table] : tables.green_tables) green_[eta] = std::make_unique<GreenResampler>(device, table);

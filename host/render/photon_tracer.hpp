@@ -18,11 +18,11 @@ namespace stokes {
 struct PassBuffers {
     Buffer<PassConstants> constants;  // [1]
     Buffer<Flux16> rows;
-    Buffer<Flux16> photon_flux;  // [lights]
-    Buffer<Flux16> radiance;     // [lights]; of beams the irradiance across them
-    bool both_branches = false;  // light below a surface goes both ways, by fluorophore and past it: chosen_branches()
-    std::uint32_t exits = 1;     // of an event and component
-    bool weighted_distances = false;  // `paper`: chosen_distances()
+    Buffer<Flux16> photon_flux;       // [lights]
+    Buffer<Flux16> radiance;          // [lights]; of beams the irradiance across them
+    bool both_branches = false;       // light below a surface goes both ways, by fluorophore and past it
+    std::uint32_t exits = 1;          // of an event and component
+    bool weighted_distances = false;  // `paper`: Distances::importance
     bool store_direct = true;         // false: photons straight from a light are not stored at diffuse surfaces
     // Where photons start; without cells anywhere on the lights, at random.
     std::uint32_t cell_count = 0;

@@ -53,7 +53,8 @@ std::string NumberRange::text() const {
 }
 
 void JsonCursor::fail_at(int line, const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}{}{}", *file_, line, path_, path_.empty() ? "" : ": ", what));
+    const std::string place = file_->empty() ? "" : fmt::format("{}:{}: ", *file_, line);
+    throw InputError(fmt::format("{}{}{}{}", place, path_, path_.empty() ? "" : ": ", what));
 }
 
 void JsonCursor::fail(const std::string& what) const { fail_at(value_->line, what); }
@@ -159,6 +160,13 @@ bool JsonCursor::boolean() const {
 
 double JsonCursor::number(const NumberRange& range) const {
     if (!is(JsonValue::Type::number) || !range.contains(value_->number)) fail_expected("a number " + range.text());
+    return value_->number;
+}
+
+std::optional<double> JsonCursor::number_or_auto(const NumberRange& range) const {
+    if (is(JsonValue::Type::string) && value_->text == "auto") return std::nullopt;
+    if (!is(JsonValue::Type::number) || !range.contains(value_->number))
+        fail_expected("a number " + range.text() + " or \"auto\"");
     return value_->number;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/core/words.hpp"
 #include "host/scene/json_tree.hpp"
 #include "host/scene/scene_keys.hpp"
 
@@ -24,11 +25,17 @@ struct NumberRange {
     std::string text() const;  // "in (0, 1]"
 };
 
+struct IntegerRange {
+    std::int64_t low;
+    std::int64_t high;
+};
+
 // Any length or coordinate [mm] in a scene: up to 10 km.
 inline constexpr NumberRange coordinate_range{-1e7, 1e7};
 inline constexpr NumberRange length_range{0.0, 1e7, true};
 
-// All readers below throw InputError "FILE:LINE: KEY.PATH: expected ..., got ...".
+// All readers below throw InputError "FILE:LINE: KEY.PATH: expected ..., got ...", or without a file, for a flag,
+// "PATH: expected ..., got ...".
 // The tree and the file name must outlive the cursor.
 class JsonCursor {
   public:
@@ -62,12 +69,19 @@ class JsonCursor {
     // Values.
     bool boolean() const;
     double number(const NumberRange& range) const;
+    // None for the word "auto".
+    std::optional<double> number_or_auto(const NumberRange& range) const;
     std::int64_t integer(std::int64_t low, std::int64_t high) const;
+    std::int64_t integer(const IntegerRange& range) const { return integer(range.low, range.high); }
     const std::string& text() const;
     // A name that may become part of a file name: letters, digits, space, _ - and . inside, at most 64.
     const std::string& name() const;
     // One of these words; returns its index.
     std::size_t choice(const std::vector<std::string>& words) const;
+    template <class Enum>
+    Enum word() const {
+        return static_cast<Enum>(choice(words_of<Enum>));
+    }
     glm::dvec3 vector(const NumberRange& range = coordinate_range) const;
     // A vector scaled to length 1; a zero vector is an error.
     glm::dvec3 direction() const;

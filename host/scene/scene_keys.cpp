@@ -10,7 +10,8 @@ const ObjectKeys scene{
 const ObjectKeys render{"render",
                         {},
                         {"passes", "photons_per_pass", "alpha", "radius_mm", "seed", "lambda_min_nm", "lambda_max_nm",
-                         "sampling", "wavelengths", "branches", "distances", "exits", "emission", "direct", "radii"}};
+                         "tables", "first_collision_only", "sampling", "wavelengths", "branches", "distances", "exits",
+                         "emission", "direct", "radii"}};
 const ObjectKeys film{"film", {}, {"width", "height", "exposure_ev"}};
 const ObjectKeys camera{"camera", {"position_mm", "target_mm"}, {"up", "vertical_fov_deg", "crop"}};
 const ObjectKeys crop{"crop", {"left", "top", "width", "height"}, {}};

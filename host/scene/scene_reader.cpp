@@ -5,25 +5,26 @@
 
 #include "host/core/error.hpp"
 #include "host/core/text_input.hpp"
+#include "host/scene/camera_reader.hpp"
 #include "host/scene/json_cursor.hpp"
 #include "host/scene/light_reader.hpp"
 #include "host/scene/material_reader.hpp"
-#include "host/scene/settings_reader.hpp"
+#include "host/scene/settings/settings_reader.hpp"
 #include "host/scene/shape_reader.hpp"
 #include "host/scene/spectrum_reader.hpp"
 
 namespace stokes {
 
-Scene read_scene(const std::string& path) {
+Scene read_scene(const std::string& path, const FlagValues& flags) {
     const std::string text = read_file(path);
     try {
-        return parse_scene(text, path);
+        return parse_scene(text, path, flags);
     } catch (const std::bad_alloc&) {
         throw InputError(path + ": this scene is too large for the memory");
     }
 }
 
-Scene parse_scene(std::string_view text, const std::string& path) {
+Scene parse_scene(std::string_view text, const std::string& path, const FlagValues& flags) {
     const JsonValue tree = parse_json(text, path);
     const JsonCursor root(tree, path);
     root.expect_object();
@@ -36,10 +37,7 @@ Scene parse_scene(std::string_view text, const std::string& path) {
 
     Scene scene;
     scene.file = path;
-    if (const auto render = root.find("render")) scene.render = read_render_settings(*render);
-    if (const auto transport = root.find("transport"))
-        scene.render.transport = static_cast<Transport>(transport->choice(transport_words));
-    if (const auto film = root.find("film")) scene.film = read_film(*film);
+    read_settings(root, flags, scene);
     scene.camera = read_camera(root.at("camera"));
 
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();

@@ -88,15 +88,6 @@ TEST_CASE("The schema has the reader's limits") {
         CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
     CHECK(property("material_diffuse", "reflectance").at("$ref") == "#/$defs/reflectance");
     CHECK(schema.at("$defs").at("reflectance").at("oneOf").at(0).at("$ref") == "#/$defs/spectrum_up_to_1");
-    CHECK(property("render", "branches").at("enum") == branches_words);
-    CHECK(property("render", "distances").at("enum") == distances_words);
-    CHECK(property("render", "emission").at("enum") == emission_words);
-    CHECK(property("render", "direct").at("enum") == direct_words);
-    CHECK(property("render", "radii").at("enum") == radii_words);
-    CHECK(property("render", "exits").at("maximum") == most_exits);
-    CHECK(property("scene", "transport").at("enum") == transport_words);
-    CHECK(property("scene", "transport").at("default") ==
-          transport_words[static_cast<std::size_t>(RenderSettings().transport)]);
     CHECK(property("material_translucent", "fresnel").at("default") == Material().fresnel);
     CHECK(property("fluorophore", "quantum_yield").at("maximum") == 1);
     for (const char* key : {"left", "top", "width", "height"}) CHECK(property("crop", key).at("maximum") == 1);
