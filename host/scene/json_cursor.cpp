@@ -87,15 +87,13 @@ void JsonCursor::expect_object() const {
     if (!is(JsonValue::Type::object)) fail_expected("an object");
 }
 
-void JsonCursor::expect_keys(const ObjectKeys& keys) const {
+void JsonCursor::expect_keys(const std::vector<std::string>& known, const std::vector<std::string>& needed) const {
     expect_object();
-    std::vector<std::string> known = keys.required;
-    known.insert(known.end(), keys.optional.begin(), keys.optional.end());
     for (const JsonKey& key : value_->keys) {
         if (contains(known, key.name)) continue;
         fail_at(key.line, fmt::format("unknown key \"{}\"{}", printable(key.name), did_you_mean(key.name, known)));
     }
-    for (const std::string& key : keys.required) {
+    for (const std::string& key : needed) {
         if (!has(key)) fail(fmt::format("missing key \"{}\"", key));
     }
 }
@@ -210,17 +208,6 @@ glm::dvec3 JsonCursor::direction() const {
     const double length = glm::length(v);
     if (!(length > 1e-12)) fail("expected a direction, got a vector of length zero");
     return v / length;
-}
-
-double JsonCursor::number_or(const std::string& key, double fallback, const NumberRange& range) const {
-    const auto found = find(key);
-    return found ? found->number(range) : fallback;
-}
-
-std::int64_t JsonCursor::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
-                                    std::int64_t high) const {
-    const auto found = find(key);
-    return found ? found->integer(low, high) : fallback;
 }
 
 }  // namespace stokes

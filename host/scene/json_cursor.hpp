@@ -10,7 +10,6 @@
 
 #include "host/core/words.hpp"
 #include "host/scene/json_tree.hpp"
-#include "host/scene/scene_keys.hpp"
 
 namespace stokes {
 
@@ -54,7 +53,7 @@ class JsonCursor {
 
     // Objects. expect_keys: unknown and missing keys are errors.
     void expect_object() const;
-    void expect_keys(const ObjectKeys& keys) const;
+    void expect_keys(const std::vector<std::string>& known, const std::vector<std::string>& needed) const;
     bool has(const std::string& key) const { return find(key).has_value(); }
     std::optional<JsonCursor> find(const std::string& key) const;
     JsonCursor at(const std::string& key) const;
@@ -85,10 +84,6 @@ class JsonCursor {
     glm::dvec3 vector(const NumberRange& range = coordinate_range) const;
     // A vector scaled to length 1; a zero vector is an error.
     glm::dvec3 direction() const;
-
-    // find(key), read with number() or integer(), or fallback where the key is absent.
-    double number_or(const std::string& key, double fallback, const NumberRange& range) const;
-    std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t low, std::int64_t high) const;
 
   private:
     std::string got() const;

@@ -9,6 +9,7 @@
 #include "host/scene/json_cursor.hpp"
 #include "host/scene/light_reader.hpp"
 #include "host/scene/material_reader.hpp"
+#include "host/scene/settings/object.hpp"
 #include "host/scene/settings/settings_reader.hpp"
 #include "host/scene/shape_reader.hpp"
 #include "host/scene/spectrum_reader.hpp"
@@ -30,10 +31,7 @@ Scene parse_scene(std::string_view text, const std::string& path, const FlagValu
     root.expect_object();
     root.at("format").choice({"stokes-scene"});
     root.at("version").integer(1, 1);
-    root.expect_keys(keys::scene);
-    for (const char* remark : {"$schema", "comment"}) {
-        if (const auto found = root.find(remark)) found->text();
-    }
+    ObjectReader(root, "scene");
 
     Scene scene;
     scene.file = path;

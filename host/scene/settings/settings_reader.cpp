@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "host/scene/settings/object.hpp"
 #include "host/scene/settings/settings.hpp"
 #include "kernels/shared/limits.h"
 
@@ -45,8 +46,8 @@ std::vector<Chosen> read_flags(const FlagValues& flags, Scene& scene) {
 }  // namespace
 
 void read_settings(const JsonCursor& root, const FlagValues& flags, Scene& scene) {
-    if (const auto render = root.find("render")) render->expect_keys(keys::render);
-    if (const auto film = root.find("film")) film->expect_keys(keys::film);
+    for (const char* object : {"render", "film"})
+        if (const auto found = root.find(object)) ObjectReader(*found, object);
     std::vector<Chosen> chosen;
     Scene unused;
     for (const Setting& setting : settings()) {
