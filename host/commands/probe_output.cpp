@@ -16,9 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<const char*, probe_component_count> names = {"specular", "single", "multiple", "fluorescence",
                                                                   "total"};
 
-const std::string& model_of(const ProbeSettings& settings) {
-    return transport_words[static_cast<std::size_t>(settings.transport)];
-}
+const std::string& model_of(const ProbeSettings& settings) { return word_of(settings.transport); }
 
 std::string share_line(const char* name, const Measured& m, const char* unit = "") {
     return fmt::format("  {:<22}{:>9.5f} +- {:.5f}{}\n", name, m.value, m.standard_error, unit);

@@ -53,7 +53,8 @@ std::string NumberRange::text() const {
 }
 
 void JsonCursor::fail_at(int line, const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}{}{}", *file_, line, path_, path_.empty() ? "" : ": ", what));
+    const std::string place = file_->empty() ? "" : fmt::format("{}:{}: ", *file_, line);
+    throw InputError(fmt::format("{}{}{}{}", place, path_, path_.empty() ? "" : ": ", what));
 }
 
 void JsonCursor::fail(const std::string& what) const { fail_at(value_->line, what); }
@@ -86,15 +87,13 @@ void JsonCursor::expect_object() const {
     if (!is(JsonValue::Type::object)) fail_expected("an object");
 }
 
-void JsonCursor::expect_keys(const ObjectKeys& keys) const {
+void JsonCursor::expect_keys(const std::vector<std::string>& known, const std::vector<std::string>& needed) const {
     expect_object();
-    std::vector<std::string> known = keys.required;
-    known.insert(known.end(), keys.optional.begin(), keys.optional.end());
     for (const JsonKey& key : value_->keys) {
         if (contains(known, key.name)) continue;
         fail_at(key.line, fmt::format("unknown key \"{}\"{}", printable(key.name), did_you_mean(key.name, known)));
     }
-    for (const std::string& key : keys.required) {
+    for (const std::string& key : needed) {
         if (!has(key)) fail(fmt::format("missing key \"{}\"", key));
     }
 }
@@ -162,6 +161,13 @@ double JsonCursor::number(const NumberRange& range) const {
     return value_->number;
 }
 
+std::optional<double> JsonCursor::number_or_auto(const NumberRange& range) const {
+    if (is(JsonValue::Type::string) && value_->text == "auto") return std::nullopt;
+    if (!is(JsonValue::Type::number) || !range.contains(value_->number))
+        fail_expected("a number " + range.text() + " or \"auto\"");
+    return value_->number;
+}
+
 std::int64_t JsonCursor::integer(std::int64_t low, std::int64_t high) const {
     const double x = value_->number;
     const bool fits = is(JsonValue::Type::number) && x == std::floor(x) && x >= static_cast<double>(low) &&
@@ -212,17 +218,6 @@ glm::dvec3 JsonCursor::direction() const {
     const double length = glm::length(v);
     if (!(length > 1e-12)) fail("expected a direction, got a vector of length zero");
     return v / length;
-}
-
-double JsonCursor::number_or(const std::string& key, double fallback, const NumberRange& range) const {
-    const auto found = find(key);
-    return found ? found->number(range) : fallback;
-}
-
-std::int64_t JsonCursor::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
-                                    std::int64_t high) const {
-    const auto found = find(key);
-    return found ? found->integer(low, high) : fallback;
 }
 
 }  // namespace stokes

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/core/json_tree.hpp"
+#include "host/core/words.hpp"
 
 namespace stokes {
 
@@ -29,11 +30,17 @@ struct NumberRange {
     std::string text() const;  // "in (0, 1]"
 };
 
+struct IntegerRange {
+    std::int64_t low;
+    std::int64_t high;
+};
+
 // Any length or coordinate [mm] in a scene: up to 10 km.
 inline constexpr NumberRange coordinate_range{-1e7, 1e7};
 inline constexpr NumberRange length_range{0.0, 1e7, true};
 
-// All readers below throw InputError "FILE:LINE: KEY.PATH: expected ..., got ...".
+// All readers below throw InputError "FILE:LINE: KEY.PATH: expected ..., got ...", or without a file, for a flag,
+// "PATH: expected ..., got ...".
 // The tree and the file name must outlive the cursor.
 class JsonCursor {
   public:
@@ -52,7 +59,7 @@ class JsonCursor {
 
     // Objects. expect_keys: unknown and missing keys are errors.
     void expect_object() const;
-    void expect_keys(const ObjectKeys& keys) const;
+    void expect_keys(const std::vector<std::string>& known, const std::vector<std::string>& needed) const;
     bool has(const std::string& key) const { return find(key).has_value(); }
     std::optional<JsonCursor> find(const std::string& key) const;
     JsonCursor at(const std::string& key) const;
@@ -67,7 +74,10 @@ class JsonCursor {
     // Values.
     bool boolean() const;
     double number(const NumberRange& range) const;
+    // None for the word "auto".
+    std::optional<double> number_or_auto(const NumberRange& range) const;
     std::int64_t integer(std::int64_t low, std::int64_t high) const;
+    std::int64_t integer(const IntegerRange& range) const { return integer(range.low, range.high); }
     const std::string& text() const;
     // A name that may become part of a file name: letters, digits, space, _ - and . inside, at most 64.
     const std::string& name() const;
@@ -75,13 +85,13 @@ class JsonCursor {
     std::size_t choice(const std::vector<std::string>& words) const;
     // count numbers; any number of them where it is 0.
     std::vector<double> numbers(const NumberRange& range, std::size_t count = 0) const;
+    template <class Enum>
+    Enum word() const {
+        return static_cast<Enum>(choice(words_of<Enum>));
+    }
     glm::dvec3 vector(const NumberRange& range = coordinate_range) const;
     // A vector scaled to length 1; a zero vector is an error.
     glm::dvec3 direction() const;
-
-    // find(key), read with number() or integer(), or fallback where the key is absent.
-    double number_or(const std::string& key, double fallback, const NumberRange& range) const;
-    std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t low, std::int64_t high) const;
 
   private:
     std::string got() const;

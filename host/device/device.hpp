@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "host/core/error.hpp"
+#include "host/core/words.hpp"
 
 namespace stokes {
 
@@ -37,8 +38,8 @@ struct DeviceDescription {
 // take masks by the processor's own instructions. scalar: one after the other, for devices whose work-items are lanes
 // themselves.
 enum class RayShape { avx512, avx2, portable, scalar };
-// As the command line spells them, in the order of RayShape.
-inline const std::vector<std::string> ray_shape_words = {"avx512", "avx2", "portable", "scalar"};
+template <>
+inline const Words words_of<RayShape> = {"avx512", "avx2", "portable", "scalar"};
 
 // By what the device says of itself: whether it is a CPU, and the width of its vectors. x86: whether this program runs
 // on such a processor, of which a CPU device is part.

@@ -131,8 +131,7 @@ std::vector<std::string> failed_assumptions(const Scene& scene) {
         const std::string failed = failure(scene, static_cast<int>(i));
         if (failed.empty()) continue;
         lines.push_back(fmt::format("{}: materials.{}: {}; transport \"{}\" takes it for a half-space", scene.file,
-                                    material.name, failed,
-                                    transport_words[static_cast<std::size_t>(scene.render.transport)]));
+                                    material.name, failed, word_of(scene.render.transport)));
     }
     return lines;
 }

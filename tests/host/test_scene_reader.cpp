@@ -102,35 +102,36 @@ TEST_CASE("Branches and exits are as the scene says, or by its sampling and tran
     };
     RenderSettings none = render("");
     none.transport = Transport::conserving;
-    CHECK(chosen_branches(none) == Branches::both);
-    CHECK(chosen_exits(none) == 1);
+    CHECK(resolved(none).branches == Branches::both);
+    CHECK(resolved(none).exits == 1);
     none.transport = Transport::paper;
-    CHECK(chosen_branches(none) == Branches::roulette);
-    CHECK(chosen_branches(render(R"(, "sampling": "plain")")) == Branches::roulette);
-    RenderSettings given = render(R"(, "sampling": "plain", "branches": "both", "exits": 5)");
-    CHECK(chosen_branches(given) == Branches::both);
+    CHECK(resolved(none).branches == Branches::roulette);
+    CHECK(resolved(render(R"(, "sampling": "plain")")).branches == Branches::roulette);
+    RenderSettings given = render(R"(, "sampling": "plain", "branches": "both")");
+    CHECK(resolved(given).branches == Branches::both);
     given.transport = Transport::conserving;
-    CHECK(chosen_exits(given) == 5);
+    given.exits = 5;
+    CHECK(resolved(given).exits == 5);
     given.transport = Transport::paper;
-    CHECK(chosen_branches(given) == Branches::both);
-    CHECK(chosen_exits(given) == 1);  // of the distance, which is drawn without weights
-    CHECK(chosen_branches(render(R"(, "branches": "roulette")")) == Branches::roulette);
+    CHECK(resolved(given).branches == Branches::both);
+    CHECK(resolved(given).exits == 1);  // of the distance, which is drawn without weights
+    CHECK(resolved(render(R"(, "branches": "roulette")")).branches == Branches::roulette);
 }
 
 TEST_CASE("Distances of the model paper are as the scene says, or by its sampling") {
     const auto render = [](const std::string& settings) {
         return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;
     };
-    CHECK(chosen_distances(render("")) == Distances::importance);
-    CHECK(chosen_distances(render(R"(, "distances": "table")")) == Distances::table);
-    CHECK(chosen_distances(render(R"(, "sampling": "plain")")) == Distances::table);
+    CHECK(resolved(render("")).distances == Distances::importance);
+    CHECK(resolved(render(R"(, "distances": "table")")).distances == Distances::table);
+    CHECK(resolved(render(R"(, "sampling": "plain")")).distances == Distances::table);
     RenderSettings given = render(R"(, "sampling": "plain", "distances": "importance")");
-    CHECK(chosen_distances(given) == Distances::importance);
+    CHECK(resolved(given).distances == Distances::importance);
     given.tables = false;
-    CHECK(chosen_distances(given) == Distances::table);
+    CHECK(resolved(given).distances == Distances::table);
     given.tables = true;
     given.transport = Transport::conserving;
-    CHECK(chosen_distances(given) == Distances::table);
+    CHECK(resolved(given).distances == Distances::table);
 }
 
 TEST_CASE("Emission, direct light and radii are as the scene says, or by its sampling") {
@@ -138,18 +139,18 @@ TEST_CASE("Emission, direct light and radii are as the scene says, or by its sam
         return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;
     };
     const RenderSettings best = render(""), plain = render(R"(, "sampling": "plain")");
-    CHECK(chosen_emission(best) == Emission::aimed);
-    CHECK(chosen_direct(best) == Direct::rays);
-    CHECK(chosen_radii(best) == Radii::one);
-    CHECK(chosen_emission(plain) == Emission::random);
-    CHECK(chosen_direct(plain) == Direct::photons);
-    CHECK(chosen_radii(plain) == Radii::one);
+    CHECK(resolved(best).emission == Emission::aimed);
+    CHECK(resolved(best).direct == Direct::rays);
+    CHECK(resolved(best).radii == Radii::one);
+    CHECK(resolved(plain).emission == Emission::random);
+    CHECK(resolved(plain).direct == Direct::photons);
+    CHECK(resolved(plain).radii == Radii::one);
     const RenderSettings given =
         render(R"(, "sampling": "plain", "emission": "stratified", "direct": "rays", "radii": "local")");
-    CHECK(chosen_emission(given) == Emission::stratified);
-    CHECK(chosen_direct(given) == Direct::rays);
-    CHECK(chosen_radii(given) == Radii::local);
-    CHECK(chosen_direct(render(R"(, "direct": "photons")")) == Direct::photons);
+    CHECK(resolved(given).emission == Emission::stratified);
+    CHECK(resolved(given).direct == Direct::rays);
+    CHECK(resolved(given).radii == Radii::local);
+    CHECK(resolved(render(R"(, "direct": "photons")")).direct == Direct::photons);
 }
 
 TEST_CASE("A surface reflects where the scene says so") {

@@ -108,7 +108,7 @@ TEST_CASE("rays and photons bring the same direct light in the mean", "[direct_l
 // By rays the surface map lacks what is in it after the first round of events, and that alone.
 TEST_CASE("photons are the same, but for those that are not stored", "[direct_light]") {
     for (const Transport transport : {Transport::conserving, Transport::paper, Transport::walk}) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)]);
+        CAPTURE(word_of(transport));
         Scene scene = mixed_scene(Direct::photons);
         scene.render.photons_per_pass = 8192;
         scene.render.transport = transport;

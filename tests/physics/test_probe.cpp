@@ -91,7 +91,7 @@ constexpr double table_tolerance = 2e-5;
 
 void check_elastic(Transport transport, const std::vector<Case>& cases, double errors = among_few) {
     for (const Case& c : cases) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)], c.albedo, c.angle_deg, c.eta);
+        CAPTURE(word_of(transport), c.albedo, c.angle_deg, c.eta);
         const ProbeResult result =
             measured(medium_of(2.0, c.albedo, c.eta), settings_of(transport, c.angle_deg, c.photons));
         const Exact exact = exact_elastic(c.albedo, c.angle_deg, c.eta);
@@ -118,7 +118,7 @@ ProbeMaterial dyed_medium(double albedo, double eta) {
 
 void check_fluorescence(Transport transport, const std::vector<Case>& cases, double errors = among_few) {
     for (const Case& c : cases) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)], c.albedo, c.angle_deg, c.eta);
+        CAPTURE(word_of(transport), c.albedo, c.angle_deg, c.eta);
         const ProbeMaterial material = dyed_medium(c.albedo, c.eta);
         const ProbeResult result = measured(material, settings_of(transport, c.angle_deg, c.photons));
         const double mu = cosine_within(c.eta, cosine_of(c.angle_deg));
@@ -368,7 +368,7 @@ TEST_CASE("the probe does not depend on the unit of length", "[probe]") {
         settings.bins = 8;
         const ProbeResult middle = measured(medium_of(1.0, 0.9), settings);
         for (const double scale : {0x1p-24, 0x1p24}) {
-            CAPTURE(transport_words[static_cast<std::size_t>(transport)], scale);
+            CAPTURE(word_of(transport), scale);
             const ProbeResult result = measured(medium_of(scale, 0.9), settings);
             CHECK(result.totals[probe_total].value == Approx(middle.totals[probe_total].value).epsilon(1e-4));
             CHECK(result.dropped == 0.0);
@@ -396,7 +396,7 @@ TEST_CASE("a probe's result depends on its material, settings and wavelength alo
 // What leaves in the bins and beyond them is what leaves at all wavelengths.
 TEST_CASE("a probe's sums agree", "[probe]") {
     for (const Transport transport : {Transport::paper, Transport::conserving, Transport::walk}) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)]);
+        CAPTURE(word_of(transport));
         ProbeSettings settings = settings_of(transport, 40.0, 6000);
         settings.r_max_mm = 0.7;
         settings.bins = 12;

@@ -14,7 +14,6 @@ namespace stokes {
 namespace {
 
 constexpr double m2_per_mm2 = 1e-6;
-constexpr NumberRange amount_range{0.0, 1e12, true};
 constexpr const char* built_in_black = "(black)";
 
 // Right-handed: u x axis = v.
@@ -42,8 +41,6 @@ Frame read_frame(const JsonCursor& light, const char* axis_key) {
     return frame;
 }
 
-double length(const JsonCursor& where, const char* key) { return where.at(key).number(length_range); }
-
 // The light's spectrum times total over its own sum, so that it sums to total over the render's wavelengths.
 Spectrum with_total(const JsonCursor& light, const Spectrum& spectrum, double total, const RenderSettings& render) {
     const double sum = spectrum.sum_1nm(render.lambda_min_nm, render.lambda_max_nm);
@@ -57,10 +54,10 @@ Spectrum with_total(const JsonCursor& light, const Spectrum& spectrum, double to
     return spectrum.scaled(factor);
 }
 
-Spectrum emitter_flux(const JsonCursor& light, const Spectrum& spectrum, double area_mm2,
+Spectrum emitter_flux(const ObjectReader& light, const Spectrum& spectrum, double area_mm2,
                       const RenderSettings& render) {
-    const std::string unit = light.one_of({"power_W", "radiance_W_m2_sr", "radiance_scale_W_m2_sr_nm"});
-    const double amount = light.at(unit).number(amount_range);
+    const std::string unit = light.exactly_one();
+    const double amount = light.number(unit);
     const double watt_per_radiance = M_PI * area_mm2 * m2_per_mm2;
     if (unit == "power_W") return with_total(light, spectrum, amount, render);
     if (unit == "radiance_W_m2_sr") return with_total(light, spectrum, amount * watt_per_radiance, render);
@@ -79,31 +76,29 @@ int emitter_material(const JsonCursor& light, Scene& scene) {
     return static_cast<int>(scene.materials.size()) - 1;
 }
 
-Light read_beam(const JsonCursor& where, SpectrumReader& spectra, const RenderSettings& render) {
+Light read_beam(const ObjectReader& where, SpectrumReader& spectra, const RenderSettings& render) {
     Light light;
     light.kind = LightKind::beam;
     double area_mm2 = 0.0;
-    if (where.at("section").choice({"disk", "rectangle"}) == 0) {
-        where.expect_keys(keys::beam_disk);
+    if (where.kind() == "beam_disk") {
         const Frame frame = read_frame(where, "direction");
-        const double radius_mm = length(where, "radius_mm");
+        const double radius_mm = where.number("radius_mm");
         light.section = BeamSection::disk;
         light.half_u_mm = radius_mm * frame.u;
         light.half_v_mm = radius_mm * frame.v;
         light.direction = frame.axis;
         area_mm2 = M_PI * radius_mm * radius_mm;
     } else {
-        where.expect_keys(keys::beam_rectangle);
         const Frame frame = read_frame(where, "direction");
         light.section = BeamSection::rectangle;
-        light.half_u_mm = 0.5 * length(where, "width_mm") * frame.u;
-        light.half_v_mm = 0.5 * length(where, "height_mm") * frame.v;
+        light.half_u_mm = 0.5 * where.number("width_mm") * frame.u;
+        light.half_v_mm = 0.5 * where.number("height_mm") * frame.v;
         light.direction = frame.axis;
         area_mm2 = 4.0 * glm::length(light.half_u_mm) * glm::length(light.half_v_mm);
     }
-    light.position_mm = where.at("position_mm").vector();
-    const double power_w = where.at("irradiance_W_m2").number(amount_range) * area_mm2 * m2_per_mm2;
-    light.flux = with_total(where, spectra.read(where.at("spectrum"), Outside::zero), power_w, render);
+    light.position_mm = where.vector("position_mm");
+    const double power_w = where.number("irradiance_W_m2") * area_mm2 * m2_per_mm2;
+    light.flux = with_total(where, spectra.read(where, "spectrum", Outside::zero), power_w, render);
     return light;
 }
 
@@ -112,28 +107,25 @@ glm::dmat4 placed(const Frame& frame, const glm::dvec3& center_mm) {
 }
 
 // The emitter's mesh about the origin; transform: to its place.
-Mesh read_emitter_mesh(const JsonCursor& where, std::size_t type, glm::dmat4& transform) {
+Mesh read_emitter_mesh(const ObjectReader& where, glm::dmat4& transform) {
     Mesh mesh;
-    if (type == 1) {
-        where.expect_keys(keys::emitter_rectangle);
-        transform = placed(read_frame(where, "normal"), where.at("center_mm").vector());
-        mesh = make_rectangle(length(where, "width_mm"), length(where, "height_mm"));
-    } else if (type == 2) {
-        where.expect_keys(keys::emitter_disk);
-        transform = placed(read_frame(where, "normal"), where.at("center_mm").vector());
-        mesh = make_disk(length(where, "radius_mm"));
+    if (where.kind() == "emitter_rectangle") {
+        transform = placed(read_frame(where, "normal"), where.vector("center_mm"));
+        mesh = make_rectangle(where.number("width_mm"), where.number("height_mm"));
+    } else if (where.kind() == "emitter_disk") {
+        transform = placed(read_frame(where, "normal"), where.vector("center_mm"));
+        mesh = make_disk(where.number("radius_mm"));
     } else {
-        where.expect_keys(keys::emitter_sphere);
-        transform[3] = glm::dvec4(where.at("center_mm").vector(), 1.0);
-        mesh = make_sphere(length(where, "radius_mm"));
+        transform[3] = glm::dvec4(where.vector("center_mm"), 1.0);
+        mesh = make_sphere(where.number("radius_mm"));
     }
     return mesh;
 }
 
-Light read_emitter(const JsonCursor& where, std::size_t type, SpectrumReader& spectra, Scene& scene) {
+Light read_emitter(const ObjectReader& where, SpectrumReader& spectra, Scene& scene) {
     Shape shape;
     glm::dmat4 transform(1.0);
-    shape.mesh = read_emitter_mesh(where, type, transform);
+    shape.mesh = read_emitter_mesh(where, transform);
     shape.material = emitter_material(where, scene);
     shape.body = scene.body_count++;
     shape.light = static_cast<int>(scene.lights.size());
@@ -141,7 +133,7 @@ Light read_emitter(const JsonCursor& where, std::size_t type, SpectrumReader& sp
     light.kind = LightKind::surface;
     light.shape = add_shape(where, std::move(shape), transform, scene);
     const double area_mm2 = mesh_area_mm2(scene.shapes.back().mesh);
-    const Spectrum spectrum = spectra.read(where.at("spectrum"), Outside::zero);
+    const Spectrum spectrum = spectra.read(where, "spectrum", Outside::zero);
     light.flux = emitter_flux(where, spectrum, area_mm2, scene.render);
     return light;
 }
@@ -150,9 +142,10 @@ Light read_emitter(const JsonCursor& where, std::size_t type, SpectrumReader& sp
 
 void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene) {
     std::vector<std::string> names;
-    for (const JsonCursor& where : lights.items()) {
-        const auto type = where.at("type").choice({"beam", "rectangle", "disk", "sphere"});
-        Light light = type == 0 ? read_beam(where, spectra, scene.render) : read_emitter(where, type, spectra, scene);
+    for (const JsonCursor& place : lights.items()) {
+        const ObjectReader where(place, "light");
+        const bool beam = where.kind() == "beam_disk" || where.kind() == "beam_rectangle";
+        Light light = beam ? read_beam(where, spectra, scene.render) : read_emitter(where, spectra, scene);
         light.name = read_own_name(where, fmt::format("light {}", names.size()), names);
         names.push_back(light.name);
         if (light.shape >= 0) scene.shapes[static_cast<std::size_t>(light.shape)].name = light.name;

@@ -11,22 +11,16 @@
 namespace stokes {
 namespace {
 
-constexpr NumberRange eta_range{1.0, 5.0};
-constexpr NumberRange dipole_eta_range{1.0, largest_dipole_eta};
 constexpr NumberRange sigma_t_range{smallest_sigma_t_per_mm, largest_sigma_t_per_mm};
-constexpr NumberRange scale_range{0.0, 1e6};
-constexpr NumberRange unit_range{0.0, 1.0};
 
-Medium read_medium(const std::string& name, const JsonCursor& where, SpectrumReader& spectra) {
-    where.expect_keys(keys::medium);
+Medium read_medium(const std::string& name, const JsonCursor& place, SpectrumReader& spectra) {
+    const ObjectReader where(place, "medium");
     Medium medium;
     medium.name = name;
-    medium.sigma_s = spectra.read(where.at("sigma_s_per_mm"), Outside::hold)
-                         .scaled(where.number_or("scale_sigma_s", 1.0, scale_range));
-    medium.sigma_a = spectra.read(where.at("sigma_a_per_mm"), Outside::hold)
-                         .scaled(where.number_or("scale_sigma_a", 1.0, scale_range));
-    medium.eta = where.number_or("eta", 1.0, eta_range);
-    medium.dipole_eta = where.number_or("dipole_eta", 1.0, dipole_eta_range);
+    medium.sigma_s = spectra.read(where, "sigma_s_per_mm", Outside::hold).scaled(where.number("scale_sigma_s"));
+    medium.sigma_a = spectra.read(where, "sigma_a_per_mm", Outside::hold).scaled(where.number("scale_sigma_a"));
+    medium.eta = where.number("eta");
+    medium.dipole_eta = where.number("dipole_eta");
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
         if (sigma_t_range.contains(sigma_t)) continue;
@@ -36,21 +30,21 @@ Medium read_medium(const std::string& name, const JsonCursor& where, SpectrumRea
     return medium;
 }
 
-Fluorophore read_fluorophore(const std::string& name, const JsonCursor& where, SpectrumReader& spectra) {
-    where.expect_keys(keys::fluorophore);
+Fluorophore read_fluorophore(const std::string& name, const JsonCursor& place, SpectrumReader& spectra) {
+    const ObjectReader where(place, "fluorophore");
     Fluorophore fluorophore;
     fluorophore.name = name;
-    fluorophore.excitation = spectra.read(where.at("excitation"), Outside::zero, 1.0);
-    fluorophore.emission = spectra.read(where.at("emission"), Outside::zero, 1.0);
-    fluorophore.conversion = where.number_or("conversion_per_nm", fluorophore.conversion, unit_range);
+    fluorophore.excitation = spectra.read(where, "excitation", Outside::zero);
+    fluorophore.emission = spectra.read(where, "emission", Outside::zero);
+    fluorophore.conversion = where.number("conversion_per_nm");
     const double emission_sum = fluorophore.emission.sum_1nm();
     if (!(emission_sum > 0.0)) {
         where.at("emission")
             .fail(fmt::format("expected some emission from {} to {} nm, got none at any whole nanometre",
                               first_lambda_nm, last_lambda_nm));
     }
-    fluorophore.quantum_yield =
-        where.number_or("quantum_yield", std::min(1.0, fluorophore.conversion * emission_sum), unit_range);
+    fluorophore.quantum_yield = where.has("quantum_yield") ? where.number("quantum_yield")
+                                                           : std::min(1.0, fluorophore.conversion * emission_sum);
     return fluorophore;
 }
 
@@ -64,18 +58,16 @@ std::shared_ptr<const Picture> read_texture(const std::string& path) {
 
 using TextureFiles = InputFiles<std::shared_ptr<const Picture>, read_texture>;
 
-Material read_diffuse(const JsonCursor& where, SpectrumReader& spectra, TextureFiles& textures) {
-    where.expect_keys(keys::material_diffuse);
+Material read_diffuse(const ObjectReader& where, SpectrumReader& spectra, TextureFiles& textures) {
     Material material;
     material.kind = MaterialKind::diffuse;
-    const JsonCursor reflectance = where.at("reflectance");
-    if (!reflectance.is(JsonValue::Type::object) || !reflectance.has("texture")) {
-        material.reflectance = spectra.read(reflectance, Outside::hold, 1.0);
+    if (!where.at("reflectance").has("texture")) {
+        material.reflectance = spectra.read(where.at("reflectance"), Outside::hold, 1.0);
         return material;
     }
-    reflectance.expect_keys(keys::reflectance_texture);
-    material.reflectance = spectra.read(reflectance.at("black"), Outside::hold, 1.0);
-    material.white = spectra.read(reflectance.at("white"), Outside::hold, 1.0);
+    const ObjectReader reflectance(where.at("reflectance"), "reflectance_texture");
+    material.reflectance = spectra.read(reflectance, "black", Outside::hold);
+    material.white = spectra.read(reflectance, "white", Outside::hold);
     material.texture = textures.read(reflectance.at("texture"));
     return material;
 }
@@ -88,20 +80,16 @@ void check_fresnel(const JsonCursor& fresnel, const Material& material, const Sc
             fmt::format("Fresnel reflection needs a medium with eta up to {:g}, got {:g}", largest_green_eta, eta));
 }
 
-Material read_translucent(const JsonCursor& where, const Scene& scene) {
-    where.expect_keys(keys::material_translucent);
+Material read_translucent(const ObjectReader& where, const Scene& scene) {
     Material material;
     material.kind = MaterialKind::translucent;
-    const auto subsurface = where.find("subsurface");
-    material.subsurface = !subsurface || subsurface->boolean();
+    material.subsurface = where.boolean("subsurface");
     const auto medium = where.find("medium");
     if (medium) material.medium = index_of_name(*medium, "media", scene.media);
     if (!medium && material.subsurface) where.fail("missing key \"medium\", which subsurface light needs");
     if (!material.subsurface) material.medium = -1;
-    if (const auto fresnel = where.find("fresnel")) {
-        material.fresnel = fresnel->boolean();
-        if (material.fresnel) check_fresnel(*fresnel, material, scene);
-    }
+    material.fresnel = where.boolean("fresnel");
+    if (material.fresnel) check_fresnel(where.at("fresnel"), material, scene);
 
     const auto fluorophore = where.find("fluorophore");
     const auto fraction = where.find("fluorescent_fraction");
@@ -111,7 +99,7 @@ Material read_translucent(const JsonCursor& where, const Scene& scene) {
     } else if (!material.subsurface) {
         where.fail("missing key \"fluorophore\": without subsurface light it is all that this material does");
     }
-    if (fraction) material.fluorescent_fraction = fraction->number(unit_range);
+    material.fluorescent_fraction = where.number("fluorescent_fraction");
     if (!fluorophore && material.fluorescent_fraction > 0.0) {
         fraction->fail("a fluorescent fraction without the key \"fluorophore\"");
     }
@@ -136,18 +124,11 @@ std::vector<Fluorophore> read_fluorophores(const JsonCursor& fluorophores, Spect
 std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader& spectra, const Scene& scene) {
     TextureFiles textures(spectra.folder());
     std::vector<Material> result;
-    for (const auto& [name, where] : materials.named_members()) {
+    for (const auto& [name, place] : materials.named_members()) {
+        const ObjectReader where(place, "material");
         Material material;
-        switch (where.at("type").choice({"diffuse", "black", "translucent"})) {
-            case 0:
-                material = read_diffuse(where, spectra, textures);
-                break;
-            case 1:
-                where.expect_keys(keys::material_black);
-                break;
-            default:
-                material = read_translucent(where, scene);
-        }
+        if (where.kind() == "material_diffuse") material = read_diffuse(where, spectra, textures);
+        if (where.kind() == "material_translucent") material = read_translucent(where, scene);
         material.name = name;
         result.push_back(std::move(material));
     }

@@ -12,35 +12,32 @@
 #include "host/scene/readers/spectrum_reader.hpp"
 #include "host/scene/scene_keys.hpp"
 #include "host/scene/settings_reader.hpp"
+#include "host/scene/readers/camera_reader.hpp"
+#include "host/scene/settings/object.hpp"
+#include "host/scene/settings/settings_reader.hpp"
 
 namespace stokes {
 
-Scene read_scene(const std::string& path) {
+Scene read_scene(const std::string& path, const FlagValues& flags) {
     const std::string text = read_file(path);
     try {
-        return parse_scene(text, path);
+        return parse_scene(text, path, flags);
     } catch (const std::bad_alloc&) {
         throw InputError(path + ": this scene is too large for the memory");
     }
 }
 
-Scene parse_scene(std::string_view text, const std::string& path) {
+Scene parse_scene(std::string_view text, const std::string& path, const FlagValues& flags) {
     const JsonValue tree = parse_json(text, path);
     const JsonCursor root(tree, path);
     root.expect_object();
     root.at("format").choice({"stokes-scene"});
     root.at("version").integer(1, 1);
-    root.expect_keys(keys::scene);
-    for (const char* remark : {"$schema", "comment"}) {
-        if (const auto found = root.find(remark)) found->text();
-    }
+    ObjectReader(root, "scene");
 
     Scene scene;
     scene.file = path;
-    if (const auto render = root.find("render")) scene.render = read_render_settings(*render);
-    if (const auto transport = root.find("transport"))
-        scene.render.transport = static_cast<Transport>(transport->choice(transport_words));
-    if (const auto film = root.find("film")) scene.film = read_film(*film);
+    read_settings(root, flags, scene);
     scene.camera = read_camera(root.at("camera"));
 
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();

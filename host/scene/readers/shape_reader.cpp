@@ -16,20 +16,13 @@
 #include "host/scene/readers/mesh_reader.hpp"
 #include "host/scene/readers/picture.hpp"
 #include "host/scene/scene_keys.hpp"
+#include "host/scene/settings/object.hpp"
 
 namespace stokes {
 namespace {
 
 constexpr NumberRange scale_range{-1e9, 1e9};
-constexpr NumberRange angle_range{-1e6, 1e6};
-constexpr int most_tiles = 512;  // along an edge
 constexpr int most_sectors = 360;
-
-double length(const JsonCursor& where, const char* key) { return where.at(key).number(length_range); }
-
-int segments(const JsonCursor& where) {
-    return static_cast<int>(where.integer_or("segments", default_segments, 4, 2048));
-}
 
 double nonzero_scale(const JsonCursor& where) {
     const double factor = where.number(scale_range);
@@ -37,24 +30,20 @@ double nonzero_scale(const JsonCursor& where) {
     return factor;
 }
 
-glm::dmat4 read_step(const JsonCursor& where) {
-    const std::string kind = where.one_of({"scale", "rotate_axis", "translate_mm"});
+glm::dmat4 read_step(const JsonCursor& place) {
+    const ObjectReader where(place, "transform");
     const glm::dmat4 identity(1.0);
-    if (kind == "scale") {
-        where.expect_keys(keys::transform_scale);
+    if (where.kind() == "transform_scale") {
         const JsonCursor scale = where.at("scale");
         if (!scale.is(JsonValue::Type::array)) return glm::scale(identity, glm::dvec3(nonzero_scale(scale)));
         const glm::dvec3 factors = scale.vector(scale_range);
         for (const JsonCursor& factor : scale.items()) nonzero_scale(factor);
         return glm::scale(identity, factors);
     }
-    if (kind == "rotate_axis") {
-        where.expect_keys(keys::transform_rotate);
-        const double angle_deg = where.at("angle_deg").number(angle_range);
-        return glm::rotate(identity, glm::radians(angle_deg), where.at("rotate_axis").direction());
+    if (where.kind() == "transform_rotate") {
+        return glm::rotate(identity, glm::radians(where.number("angle_deg")), where.direction("rotate_axis"));
     }
-    where.expect_keys(keys::transform_translate);
-    return glm::translate(identity, where.at("translate_mm").vector());
+    return glm::translate(identity, where.vector("translate_mm"));
 }
 
 glm::dmat4 read_transform(const JsonCursor& shape) {
@@ -71,26 +60,12 @@ struct ShapeFiles {
     InputFiles<Picture, read_picture> pictures;
 };
 
-Mesh read_round_shape(const JsonCursor& where, std::size_t type) {
-    if (type == 2) {
-        where.expect_keys(keys::shape_sphere);
-        return make_sphere(length(where, "radius_mm"), segments(where));
-    }
-    if (type == 4) {
-        where.expect_keys(keys::shape_disk);
-        return make_disk(length(where, "radius_mm"), segments(where));
-    }
-    where.expect_keys(keys::shape_cylinder);
-    return make_cylinder(length(where, "radius_mm"), length(where, "height_mm"), segments(where));
-}
-
-Mesh read_mask(const JsonCursor& where, ShapeFiles& files) {
-    where.expect_keys(keys::shape_mask);
+Mesh read_mask(const ObjectReader& where, ShapeFiles& files) {
     const JsonCursor file = where.at("file");
     MaskTexels texels;
-    texels.threshold = where.number_or("threshold", texels.threshold, {0.0, 1.0, true});
-    if (const auto invert = where.find("invert")) texels.invert = invert->boolean();
-    const double width = length(where, "width_mm"), height = length(where, "height_mm");
+    texels.threshold = where.number("threshold");
+    texels.invert = where.boolean("invert");
+    const double width = where.number("width_mm"), height = where.number("height_mm");
     const Picture& picture = files.pictures.read(file);
     try {
         return make_mask(picture, width, height, texels);
@@ -99,30 +74,18 @@ Mesh read_mask(const JsonCursor& where, ShapeFiles& files) {
     }
 }
 
-const std::vector<std::string> shape_types = {"mesh",  "box",      "sphere", "rectangle", "disk",
-                                              "prism", "cylinder", "mask",   "tiles",     "sectors"};
-constexpr std::size_t mask_type = 7, tiles_type = 8, sectors_type = 9;
-
-Mesh read_shape_mesh(const JsonCursor& where, std::size_t type, ShapeFiles& files) {
-    switch (type) {
-        case 0:
-            where.expect_keys(keys::shape_mesh);
-            return files.meshes.read(where.at("file"));
-        case 1:
-            where.expect_keys(keys::shape_box);
-            return make_box(where.at("size_mm").vector(length_range));
-        case 3:
-            where.expect_keys(keys::shape_rectangle);
-            return make_rectangle(length(where, "width_mm"), length(where, "height_mm"));
-        case 5:
-            where.expect_keys(keys::shape_prism);
-            return make_prism(static_cast<int>(where.at("sides").integer(3, 2048)), length(where, "radius_mm"),
-                              length(where, "height_mm"));
-        case mask_type:
-            return read_mask(where, files);
-        default:
-            return read_round_shape(where, type);
-    }
+Mesh read_shape_mesh(const ObjectReader& where, ShapeFiles& files) {
+    const std::string& kind = where.kind();
+    if (kind == "shape_mesh") return files.meshes.read(where.at("file"));
+    if (kind == "shape_box") return make_box(where.vector("size_mm"));
+    if (kind == "shape_sphere") return make_sphere(where.number("radius_mm"), where.integer("segments"));
+    if (kind == "shape_rectangle") return make_rectangle(where.number("width_mm"), where.number("height_mm"));
+    if (kind == "shape_disk") return make_disk(where.number("radius_mm"), where.integer("segments"));
+    if (kind == "shape_prism")
+        return make_prism(where.integer("sides"), where.number("radius_mm"), where.number("height_mm"));
+    if (kind == "shape_cylinder")
+        return make_cylinder(where.number("radius_mm"), where.number("height_mm"), where.integer("segments"));
+    return read_mask(where, files);
 }
 
 const Material& material_of(const Scene& scene, int material) {
@@ -149,28 +112,26 @@ std::vector<int> read_part_materials(const JsonCursor& where, const Scene& scene
     return materials;
 }
 
-std::vector<Mesh> read_parts(const JsonCursor& where, std::size_t type, std::size_t material_count) {
+std::vector<Mesh> read_parts(const ObjectReader& where, std::size_t material_count) {
     const JsonCursor materials = where.at("materials");
     const auto parts = static_cast<int>(material_count);
-    if (type == tiles_type) {
-        const auto columns = static_cast<int>(where.at("columns").integer(1, most_tiles));
-        const auto rows = static_cast<int>(where.at("rows").integer(1, most_tiles));
-        const glm::dvec3 size = where.at("size_mm").vector(length_range);
+    if (where.kind() == "shape_tiles") {
+        const int columns = where.integer("columns"), rows = where.integer("rows");
+        const glm::dvec3 size = where.vector("size_mm");
         if (parts >= columns + rows)
             materials.fail_expected(
                 fmt::format("at most {} materials for {} x {} tiles", columns + rows - 1, columns, rows));
         return make_tiles(size, columns, rows, parts);
     }
     if (parts > most_sectors) materials.fail_expected(fmt::format("at most {} materials", most_sectors));
-    return make_sectors(length(where, "radius_mm"), length(where, "height_mm"), parts, segments(where),
-                        where.number_or("start_deg", 0.0, angle_range));
+    return make_sectors(where.number("radius_mm"), where.number("height_mm"), parts, where.integer("segments"),
+                        where.number("start_deg"));
 }
 
 // Shapes of several materials: one shape of the scene for each, of one body.
-void read_compound(const JsonCursor& where, std::size_t type, const std::string& name, Scene& scene) {
-    where.expect_keys(type == tiles_type ? keys::shape_tiles : keys::shape_sectors);
+void read_compound(const ObjectReader& where, const std::string& name, Scene& scene) {
     const std::vector<int> materials = read_part_materials(where.at("materials"), scene);
-    const std::vector<Mesh> parts = read_parts(where, type, materials.size());
+    const std::vector<Mesh> parts = read_parts(where, materials.size());
     const glm::dmat4 transform = read_transform(where);
     const int body = scene.body_count++;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -212,19 +173,19 @@ void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, 
     ShapeFiles files(folder);
     std::map<std::string, int> bodies;
     std::vector<std::string> names;
-    for (const JsonCursor& where : shapes.items()) {
-        const std::size_t type = where.at("type").choice(shape_types);
+    for (const JsonCursor& place : shapes.items()) {
+        const ObjectReader where(place, "shape");
         const std::string name = read_own_name(where, fmt::format("shape {}", names.size()), names);
         names.push_back(name);
-        if (type == tiles_type || type == sectors_type) {
-            read_compound(where, type, name, scene);
+        if (where.has("materials")) {
+            read_compound(where, name, scene);
             continue;
         }
         Shape shape;
-        shape.mesh = read_shape_mesh(where, type, files);
+        shape.mesh = read_shape_mesh(where, files);
         shape.name = name;
         shape.material = index_of_name(where.at("material"), "materials", scene.materials);
-        shape.two_sided = type == mask_type;
+        shape.two_sided = where.kind() == "shape_mask";
         if (shape.two_sided && material_of(scene, shape.material).kind == MaterialKind::translucent)
             where.at("material").fail("expected a black or diffuse material for a mask, got a translucent one");
         shape.body = read_body(where, shape.material, scene, bodies);

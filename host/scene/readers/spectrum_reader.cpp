@@ -12,7 +12,7 @@
 namespace stokes {
 namespace {
 
-constexpr NumberRange value_range{0.0, 1e12};
+constexpr NumberRange value_range{0.0, largest_spectrum_value};
 constexpr NumberRange wavelength_range{0.0, 1e5, true};
 
 std::optional<Outside> read_outside(const JsonCursor& where) {
@@ -21,10 +21,7 @@ std::optional<Outside> read_outside(const JsonCursor& where) {
     return outside->choice({"zero", "hold"}) == 0 ? Outside::zero : Outside::hold;
 }
 
-Spectrum read_illuminant(const JsonCursor& where) {
-    where.expect_keys(keys::spectrum_illuminant);
-    static const std::vector<std::string> names = {"A", "D65", "E"};
-    const std::string name = names[where.at("illuminant").choice(names)];
+Spectrum read_illuminant(const std::string& name) {
     const std::string file = "tables/cie/illuminants_1nm.csv";
     const auto found = embedded_files().find(file);
     if (found == embedded_files().end()) throw RunError(file + " is not in this program");
@@ -62,9 +59,13 @@ void SpectrumReader::define(const JsonCursor& spectra) {
     for (const auto& [name, value] : spectra.named_members()) named_[name] = read_object(value);
 }
 
+Spectrum SpectrumReader::read(const ObjectReader& object, const char* key, Outside outside) {
+    return read(object.at(key), outside, object.maximum(key));
+}
+
 Spectrum SpectrumReader::read(const JsonCursor& where, Outside outside, double maximum) {
     if (where.is(JsonValue::Type::number)) {
-        return Spectrum::constant(where.number({0.0, std::min(maximum, value_range.high)}));
+        return Spectrum::constant(where.number({0.0, maximum}));
     }
     Definition definition;
     if (where.is(JsonValue::Type::string)) {
@@ -85,24 +86,19 @@ Spectrum SpectrumReader::read(const JsonCursor& where, Outside outside, double m
     return definition.spectrum;
 }
 
-SpectrumReader::Definition SpectrumReader::read_object(const JsonCursor& where) {
-    const std::string kind = where.one_of({"file", "illuminant", "pairs", "constant"});
-    if (kind == "file") return read_file_column(where);
-    if (kind == "illuminant") return {read_illuminant(where), Outside::zero};
-    if (kind == "pairs") {
-        where.expect_keys(keys::spectrum_pairs);
-        return {read_pairs(where.at("pairs")), read_outside(where)};
-    }
-    where.expect_keys(keys::spectrum_constant);
-    return {Spectrum::constant(where.at("constant").number(value_range)), Outside::hold};
+SpectrumReader::Definition SpectrumReader::read_object(const JsonCursor& place) {
+    const ObjectReader where(place, "spectrum_object");
+    if (where.kind() == "spectrum_file") return read_file_column(where);
+    if (where.kind() == "spectrum_illuminant") return {read_illuminant(where.at("illuminant").text()), Outside::zero};
+    if (where.kind() == "spectrum_pairs") return {read_pairs(where.at("pairs")), read_outside(where)};
+    return {Spectrum::constant(where.number("constant")), Outside::hold};
 }
 
-SpectrumReader::Definition SpectrumReader::read_file_column(const JsonCursor& where) {
-    where.expect_keys(keys::spectrum_file);
+SpectrumReader::Definition SpectrumReader::read_file_column(const ObjectReader& where) {
     const CsvTable& csv = tables_.read(where.at("file"));
     const JsonCursor column = where.at("column");
     const std::string& name = column.text();
-    const double scale = where.number_or("scale", 1.0, value_range);
+    const double scale = where.number("scale");
     Spectrum spectrum;
     try {
         spectrum = csv_spectrum(csv, name, Outside::zero).scaled(scale);

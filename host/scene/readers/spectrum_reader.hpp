@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 #include "host/core/csv_table.hpp"
 #include "host/core/spectrum.hpp"
 #include "host/scene/readers/input_files.hpp"
+#include "host/scene/settings/object.hpp"
 
 namespace stokes {
 
@@ -25,7 +25,9 @@ class SpectrumReader {
     // A name from "spectra", a number, or an object. Values are >= 0; one above maximum is an error. outside
     // holds where the scene does not say; a constant is the same everywhere, an illuminant zero outside its
     // table.
-    Spectrum read(const JsonCursor& where, Outside outside, double maximum = std::numeric_limits<double>::infinity());
+    Spectrum read(const JsonCursor& where, Outside outside, double maximum);
+    // The same of an object's key, whose declaration has the maximum.
+    Spectrum read(const ObjectReader& object, const char* key, Outside outside);
 
   private:
     struct Definition {
@@ -34,7 +36,7 @@ class SpectrumReader {
     };
 
     Definition read_object(const JsonCursor& where);
-    Definition read_file_column(const JsonCursor& where);
+    Definition read_file_column(const ObjectReader& where);
 
     InputFiles<CsvTable, read_csv> tables_;
     std::map<std::string, Definition> named_;
