@@ -8,7 +8,6 @@
 #include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/material_reader.hpp"
 #include "host/scene/readers/shape_reader.hpp"
-#include "host/scene/scene_keys.hpp"
 
 namespace stokes {
 namespace {

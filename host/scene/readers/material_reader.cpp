@@ -6,7 +6,6 @@
 
 #include "host/core/media_limits.hpp"
 #include "host/scene/readers/input_files.hpp"
-#include "host/scene/scene_keys.hpp"
 
 namespace stokes {
 namespace {

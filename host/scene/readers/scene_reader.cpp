@@ -10,11 +10,9 @@
 #include "host/scene/readers/material_reader.hpp"
 #include "host/scene/readers/shape_reader.hpp"
 #include "host/scene/readers/spectrum_reader.hpp"
-#include "host/scene/scene_keys.hpp"
-#include "host/scene/settings_reader.hpp"
+#include "host/scene/settings/settings_reader.hpp"
 #include "host/scene/readers/camera_reader.hpp"
 #include "host/scene/settings/object.hpp"
-#include "host/scene/settings/settings_reader.hpp"
 
 namespace stokes {
 

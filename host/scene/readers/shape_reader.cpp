@@ -15,7 +15,6 @@
 #include "host/scene/readers/material_reader.hpp"
 #include "host/scene/readers/mesh_reader.hpp"
 #include "host/scene/readers/picture.hpp"
-#include "host/scene/scene_keys.hpp"
 #include "host/scene/settings/object.hpp"
 
 namespace stokes {

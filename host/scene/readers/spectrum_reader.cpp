@@ -7,7 +7,6 @@
 #include "host/core/embedded.hpp"
 #include "host/core/error.hpp"
 #include "host/core/text_input.hpp"
-#include "host/scene/scene_keys.hpp"
 
 namespace stokes {
 namespace {
