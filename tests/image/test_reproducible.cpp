@@ -1,5 +1,4 @@
 #include <cstdlib>
-#include <cstring>
 #include <optional>
 
 #include "host/image/exr.hpp"
@@ -22,10 +21,6 @@ FilmImage rendered(const Scene& scene, std::size_t local_size, std::initializer_
     Renderer renderer(device, scene);
     for (const std::uint32_t pass : passes) renderer.render_pass(pass);
     return renderer.image();
-}
-
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
 }  // namespace

@@ -13,14 +13,6 @@ namespace {
 
 constexpr float offset_mm = 1e-4f;
 
-std::vector<Triangle> triangles_of(const Mesh& mesh, std::uint32_t body) {
-    std::vector<Triangle> triangles;
-    for (const glm::uvec3& t : mesh.triangles)
-        triangles.push_back(
-            make_triangle(mesh.positions_mm[t.x], mesh.positions_mm[t.y], mesh.positions_mm[t.z], 0, body));
-    return triangles;
-}
-
 // Points of the tangent plane at the entries, all of them missed by their probes.
 struct Missed {
     std::vector<ExitPoint> exits;

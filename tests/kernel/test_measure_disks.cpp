@@ -11,13 +11,6 @@ using namespace stokes;
 
 namespace {
 
-std::vector<Triangle> triangles_of(const Mesh& mesh) {
-    std::vector<Triangle> triangles;
-    for (const glm::uvec3& t : mesh.triangles)
-        triangles.push_back(make_triangle(mesh.positions_mm[t.x], mesh.positions_mm[t.y], mesh.positions_mm[t.z]));
-    return triangles;
-}
-
 GatherPoint point_at(double x, double y, double z) {
     GatherPoint point{};
     point.x = static_cast<float>(x);

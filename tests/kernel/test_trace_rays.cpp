@@ -1,7 +1,6 @@
 // trace_closest and trace_any against a plain double-precision search over all triangles.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -44,10 +43,6 @@ int count_wrong(const std::vector<Triangle>& triangles, const std::vector<Ray>& 
 std::size_t count_hits(const std::vector<Hit>& hits) {
     return static_cast<std::size_t>(
         std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.triangle != STOKES_NONE; }));
-}
-
-bool same_bits(const std::vector<Hit>& a, const std::vector<Hit>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Hit)) == 0;
 }
 
 // A fifth of the rays keeps one direction component, another fifth loses two.

@@ -1,7 +1,6 @@
 // Light below the surface of a slab of two tiles: what enters one leaves through the other as if there were
 // no border.
 #include <cmath>
-#include <cstring>
 
 #include "host/scene/mesh/shapes.hpp"
 #include "host/subsurface/fresnel.hpp"
@@ -99,9 +98,8 @@ TEST_CASE("what leaves a slab of two media is what leaves a slab of the first, b
         const std::array<Deposits, 3> one = stored_light(two_tiles(transport, 0)),
                                       two = stored_light(two_tiles(transport, 1));
         for (std::size_t m = 0; m < 3; ++m) {
-            REQUIRE(one[m].heads.size() == two[m].heads.size());
-            CHECK(std::memcmp(one[m].heads.data(), two[m].heads.data(), one[m].heads.size() * sizeof(PhotonHead)) == 0);
-            CHECK(std::memcmp(one[m].flux.data(), two[m].flux.data(), one[m].flux.size() * sizeof(Flux16)) == 0);
+            CHECK(same_bits(one[m].heads, two[m].heads));
+            CHECK(same_bits(one[m].flux, two[m].flux));
         }
     }
 }

@@ -5,6 +5,8 @@
 #include <map>
 #include <random>
 
+#include "host/scene/scene.hpp"
+
 namespace stokes {
 
 bool are_watertight(const std::vector<Mesh>& parts) {
@@ -19,6 +21,13 @@ bool are_watertight(const std::vector<Mesh>& parts) {
     for (const auto& [edge, count] : edges)
         if (count != 1 || edges.count({edge.second, edge.first}) == 0) return false;
     return !edges.empty();
+}
+
+std::vector<Triangle> triangles_of(const Mesh& mesh, std::uint32_t body) {
+    std::vector<Triangle> triangles;
+    const std::vector<glm::vec3>& p = mesh.positions_mm;
+    for (const glm::uvec3& t : mesh.triangles) triangles.push_back(make_triangle(p[t.x], p[t.y], p[t.z], 0, body));
+    return triangles;
 }
 
 std::vector<Triangle> sphere_mesh(int rings, int segments, float radius_mm, const glm::vec3& centre_mm,

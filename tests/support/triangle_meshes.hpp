@@ -5,10 +5,11 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "host/scene/scene.hpp"
 #include "kernels/shared/ray.h"
 
 namespace stokes {
+
+struct Mesh;
 
 // A triangle by its corners; the normal is (v1 - v0) x (v2 - v0).
 inline Triangle make_triangle(const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2, std::uint32_t shape = 0,
@@ -26,6 +27,8 @@ inline glm::dvec3 point_on(const Triangle& t, double u, double v) { return v0_of
 
 // Whether every directed edge, by the exact places of its ends, is in all the meshes once, and its reverse once.
 bool are_watertight(const std::vector<Mesh>& parts);
+
+std::vector<Triangle> triangles_of(const Mesh& mesh, std::uint32_t body = 0);
 
 // A closed sphere of 2 * segments * (rings - 1) triangles, outward normals; vertices on the axes are exact
 // neither in position nor in spacing, so that edges meet rays at all angles.

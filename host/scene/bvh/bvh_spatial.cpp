@@ -62,12 +62,7 @@ Bins fill_bins(const BvhSet& set, const BvhClipper& clipper, std::size_t axis, c
 }
 
 void find_best_plane(const BvhSet& set, const Bins& bins, std::size_t axis, const Planes& planes, SpatialSplit& best) {
-    Bins right;  // from each bin on
-    right[bin_count - 1] = bins[bin_count - 1];
-    for (int i = bin_count - 2; i > 0; --i) {
-        right[i] = bins[i];
-        right[i].add(right[i + 1]);
-    }
+    const auto right = sums_from_each_bin(bins);
     Bin left;
     for (int i = 1; i < bin_count; ++i) {
         left.add(bins[i - 1]);

@@ -69,12 +69,7 @@ Bins fill_bins(const BvhSet& set, const std::array<BvhBinning, 3>& binnings, uns
 }
 
 void find_best_plane(const std::array<Bin, bin_count>& bins, std::size_t axis, ObjectSplit& best) {
-    std::array<Bin, bin_count> right;  // from each bin on
-    right[bin_count - 1] = bins[bin_count - 1];
-    for (int i = bin_count - 2; i > 0; --i) {
-        right[i] = bins[i];
-        right[i].add(right[i + 1]);
-    }
+    const auto right = sums_from_each_bin(bins);
     Bin left;
     for (int i = 1; i < bin_count; ++i) {
         left.add(bins[i - 1]);

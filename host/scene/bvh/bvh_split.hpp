@@ -55,6 +55,13 @@ struct BvhBinning {
     int bin(const BvhBox& box, std::size_t axis) const;
 };
 
+// What lies in each bin and in those after it.
+template <class Bins>
+Bins sums_from_each_bin(Bins bins) {
+    for (std::size_t i = bins.size() - 1; i > 0; --i) bins[i - 1].add(bins[i]);
+    return bins;
+}
+
 // Refs go to the side on which their centres lie: those in bins below `bin` to the left.
 struct ObjectSplit {
     double cost = std::numeric_limits<double>::infinity();  // infinity: all centres coincide
