@@ -55,10 +55,16 @@ Material translucent(double fraction) {
 
 }  // namespace
 
-Scene furnace_scene(double reflectance) {
+Scene empty_scene(const std::string& name) {
     Scene scene;
+    scene.file = name;
     scene.render.wavelengths = Wavelengths::uniform;
-    scene.file = "furnace";
+    scene.render.emission = Emission::stratified;
+    return scene;
+}
+
+Scene furnace_scene(double reflectance) {
+    Scene scene = empty_scene("furnace");
     scene.materials = {diffuse(reflectance)};
     Mesh mesh = make_sphere(100.0, 64);
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
@@ -77,10 +83,8 @@ Scene furnace_scene(double reflectance) {
 }
 
 Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transport) {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
+    Scene scene = empty_scene("slab");
     scene.render.transport = transport;
-    scene.file = "slab";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};
     scene.materials = {translucent(fluorescent_fraction)};
@@ -103,10 +107,8 @@ Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transp
 }
 
 Scene small_scene(Transport transport) {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
+    Scene scene = empty_scene("small");
     scene.render.transport = transport;
-    scene.file = "small";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};
     scene.materials = {diffuse(0.7), translucent(0.5), Material{}};
