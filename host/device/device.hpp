@@ -69,6 +69,9 @@ class Device {
     // Waits for all launches.
     void finish() const;
 
+    // Built when first asked for. Errors: cl::Error.
+    cl::Program program(const std::string& source, const std::string& flags) const;
+
     // Directory to read kernels from in place of the embedded text; empty: embedded.
     void set_kernel_directory(const std::string& directory) { shared_->kernel_directory = directory; }
     const std::string& kernel_directory() const { return shared_->kernel_directory; }
@@ -111,6 +114,7 @@ class Device {
         DeviceDescription description;
         cl::Device device;
         cl::Context context;
+        std::map<std::pair<std::string, std::string>, cl::Program> programs;  // by source and flags
         cl::CommandQueue queue;
         std::string kernel_directory;
         std::size_t local_size = 64;

@@ -23,8 +23,7 @@ void Program::build(const std::string& name, const std::string& text, const std:
     source_ = expand_kernel_source(name, text, device_.kernel_directory());
     const SignalsHeldBack held_back;
     try {
-        program_ = cl::Program(device_.context(), source_);
-        program_.build(flags.c_str());
+        program_ = device_.program(source_, flags);
     } catch (const cl::BuildError& error) {
         std::string log;
         for (const auto& entry : error.getBuildLog()) log += entry.second;

@@ -116,10 +116,13 @@ Scene prisms() {
     return scene;
 }
 
-FilmImage rendered(const Scene& scene) {
-    Renderer renderer(test_device(), scene);
-    for (std::uint32_t pass = 0; pass < passes; ++pass) renderer.render_pass(pass);
-    return renderer.image();
+const FilmImage& picture_of_prisms() {
+    static const FilmImage picture = [] {
+        Renderer renderer(test_device(), prisms());
+        for (std::uint32_t pass = 0; pass < passes; ++pass) renderer.render_pass(pass);
+        return renderer.image();
+    }();
+    return picture;
 }
 
 // Of the light that the dots give back under the lamp, and of the lamp's own, at the wavelengths of the
@@ -151,7 +154,7 @@ TEST_CASE("wavelengths are dominant in their own light", "[hue]") {
 // re-radiated more than once, by other dots too, which moves the emission's short side: 0.015 in x and y.
 TEST_CASE("the prisms glow in the colours of their quantum dots", "[hue]") {
     const Scene scene = prisms();
-    const FilmImage image = rendered(scene);
+    const FilmImage& image = picture_of_prisms();
     const std::vector<SeenPoint> points = seen_points(scene);
     std::set<std::string> checked;
     for (std::size_t s = 0; s < scene.shapes.size(); ++s) {
@@ -184,7 +187,7 @@ TEST_CASE("the prisms glow in the colours of their quantum dots", "[hue]") {
 // turn away from theirs, stay violet.
 TEST_CASE("white things are violet in the lamp's light and tinted by the prism below", "[hue]") {
     const Scene scene = prisms();
-    const FilmImage image = rendered(scene);
+    const FilmImage& image = picture_of_prisms();
     const std::vector<SeenPoint> points = seen_points(scene);
     const glm::dvec2 lamp = lamp_chromaticity(scene);
     CHECK(dominant_wavelength(lamp) < 440.0);

@@ -142,8 +142,7 @@ TEST_CASE("photons are the same, but for those that are not stored", "[direct_li
 
 // Nothing that a convex body reflects falls on it again.
 TEST_CASE("where nothing is lit but by lights, the surface map is empty", "[direct_light]") {
-    Scene scene;
-    scene.file = "ball";
+    Scene scene = empty_scene("ball");
     scene.materials = {diffuse_material(0.6)};
     add_shape(scene, "ball", 0, make_sphere(10.0, 48));
     scene.lights = {disk_beam({0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, 30.0, Spectrum::constant(1.0))};

@@ -18,9 +18,8 @@ Fluorophore overlapping() {
 
 // A plane of surface fluorescence, c = 1, under a parallel beam; its interior is seen from above.
 Scene plane_scene(const Spectrum& irradiance) {
-    Scene scene;
+    Scene scene = empty_scene("plane");
     scene.render.transport = Transport::paper;
-    scene.file = "plane";
     scene.fluorophores = {overlapping()};
     Material material;
     material.name = "paint";

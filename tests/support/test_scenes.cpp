@@ -65,13 +65,18 @@ Mesh turned_over(Mesh mesh) {
     return mesh;
 }
 
-Scene furnace_scene(double reflectance) {
+Scene empty_scene(const std::string& name) {
     Scene scene;
+    scene.file = name;
     scene.render.wavelengths = Wavelengths::uniform;
-    scene.file = "furnace";
+    scene.render.emission = Emission::stratified;
+    return scene;
+}
+
+Scene furnace_scene(double reflectance) {
+    Scene scene = empty_scene("furnace");
     scene.materials = {diffuse_material(reflectance)};
-    Shape& wall = add_shape(scene, "wall", 0, turned_over(make_sphere(100.0, 64)));
-    wall.light = 0;
+    add_shape(scene, "wall", 0, turned_over(make_sphere(100.0, 64))).light = 0;
     Light light;
     light.name = "wall";
     light.shape = 0;
@@ -85,10 +90,8 @@ Scene furnace_scene(double reflectance) {
 }
 
 Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transport) {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
+    Scene scene = empty_scene("slab");
     scene.render.transport = transport;
-    scene.file = "slab";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};
     scene.materials = {translucent(fluorescent_fraction)};
@@ -111,10 +114,8 @@ Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transp
 }
 
 Scene small_scene(Transport transport) {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
+    Scene scene = empty_scene("small");
     scene.render.transport = transport;
-    scene.file = "small";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};
     scene.materials = {diffuse_material(0.7), translucent(0.5), Material{}};
