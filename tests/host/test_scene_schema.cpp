@@ -53,7 +53,7 @@ std::string scene_text(Transport transport, const std::string& render) {
 TEST_CASE("The schema file is what the program prints", "[scene_schema]") {
     const Outcome printed = run_stokes("schema");
     CHECK(printed.code == 0);
-    CHECK(file_content(STOKES_SOURCE_DIR "/scenes/scene.schema.json") == printed.out);
+    CHECK(file_content(source_path("scenes/scene.schema.json")) == printed.out);
 }
 
 TEST_CASE("Every definition of the schema is referred to, and every reference is defined", "[scene_schema]") {

@@ -76,7 +76,8 @@ Scene empty_scene(const std::string& name) {
 Scene furnace_scene(double reflectance) {
     Scene scene = empty_scene("furnace");
     scene.materials = {diffuse_material(reflectance)};
-    add_shape(scene, "wall", 0, turned_over(make_sphere(100.0, 64))).light = 0;
+    Shape& wall = add_shape(scene, "wall", 0, turned_over(make_sphere(100.0, 64)));
+    wall.light = 0;
     Light light;
     light.name = "wall";
     light.shape = 0;
