@@ -97,9 +97,7 @@ TEST_CASE("A cursor names the key path, what it expected and what it found") {
     CHECK(input_error([&] {
               root.expect_keys({"n", "s", "v", "lists"}, {});
           }) == "f.json:1: unknown key \"list\"; did you mean \"lists\"?");
-    CHECK(input_error([&] {
-              root.expect_keys({"n", "s", "list", "v"}, {"n", "w"});
-          }) == "f.json:1: missing key \"w\"");
+    CHECK(input_error([&] { root.expect_keys({"n", "s", "list", "v"}, {"n", "w"}); }) == "f.json:1: missing key \"w\"");
     CHECK(input_error([&] {
               root.one_of({"n", "s"});
           }) == "f.json:1: \"n\" and \"s\" given together; expected one of them");

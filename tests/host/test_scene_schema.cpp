@@ -5,8 +5,8 @@
 #include "host/scene/settings/schema.hpp"
 #include "host/scene/settings/settings.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/paths.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
@@ -78,7 +78,7 @@ TEST_CASE("Every setting has a key and a flag of its own", "[scene_schema]") {
 TEST_CASE("Help, schema and documents say the same sentence of a setting", "[scene_schema]") {
     const std::string help = in_one_line(run_stokes("render --help").out);
     const Json schema = scene_schema().at("$defs");
-    const std::string guide = file_content(STOKES_SOURCE_DIR "/scenes/README.md");
+    const std::string guide = file_content(source_path("scenes/README.md"));
     for (const Setting& setting : settings()) {
         INFO(setting.key);
         CHECK_THAT(help, Contains(setting.flag()) && Contains(setting.sentence()));

@@ -81,7 +81,7 @@ Scene furnace_scene(double reflectance) {
     Light light;
     light.name = "wall";
     light.shape = 0;
-    light.flux = Spectrum::constant(M_PI * mesh_area_mm2(wall.mesh) * 1e-6);
+    light.flux = Spectrum::constant(M_PI * mesh_area_mm2(scene.shapes[0].mesh) * 1e-6);
     scene.lights = {light};
     scene.camera.position_mm = {20.0, -10.0, 5.0};
     scene.camera.target_mm = {-30.0, 40.0, 10.0};
