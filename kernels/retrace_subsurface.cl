@@ -5,12 +5,13 @@
 #include "lib/light_sum.clh"
 #include "lib/reradiation.clh"
 #include "lib/retrace.clh"
+#include "lib/surface.clh"
 #include "shared/material.h"
 #include "shared/photon.h"
 
 // What was to leave where there is no surface.
 FORCE_INLINE float2 missed_light(const ExitPoint* exit_point) {
-    return exit_point->r_mm < 0.0f ? light_in(exit_point->kept) : (float2)(0.0f);
+    return exit_point->found != 0u ? (float2)(0.0f) : light_in(exit_point->kept);
 }
 
 // Model `paper`. Work-items: round.count exits of the fluorescence component.
@@ -45,7 +46,7 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     add_light(&ledger->stokes_loss, taken_up - converted);
 
     const uint slot = round.first_slot + i;
-    const bool found = exit_point.r_mm >= 0.0f;
+    const bool found = exit_point.found != 0u;
     if (!found || slot >= round.slot_limit) {
         add_light(&ledger->dropped, kept);
         end_path(&rays[path], ledger, found ? STOKES_FATE_MAP_FULL : STOKES_FATE_MISSED_EXIT);
@@ -105,7 +106,7 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
     const float at = draw.a * max(incident.x, kept.x);
     const bool ended = !(at < kept.x);
     const ExitPoint chosen = at < single.kept.energy ? single : multiple;
-    if (ended || chosen.r_mm < 0.0f) {
+    if (ended || chosen.found == 0u) {
         add_light(&ledger->roulette, kept - missed);
         end_path(&rays[path], ledger, ended ? STOKES_FATE_ABSORBED : STOKES_FATE_MISSED_EXIT);
         return;
@@ -174,7 +175,7 @@ __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const 
         return;
     }
     // On the surface what is not taken up is absorbed; below it, the rest met another branch, or another way.
-    add_light(material->medium == STOKES_NONE ? &ledger->absorbed : &ledger->roulette, incident - a.taken_up);
+    add_light(has(material, STOKES_MATERIAL_SUBSURFACE) ? &ledger->roulette : &ledger->absorbed, incident - a.taken_up);
     add_light(&ledger->stokes_loss, a.stokes_loss);
     add_light(&ledger->absorbed, a.absorbed);
     add_light(&ledger->dropped, a.missed);
@@ -193,7 +194,7 @@ __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const 
         }
     const bool ended = entry == STOKES_NONE;
     const ExitPoint chosen = exits[groups.first_exit[group] + (ended ? i * round.exits : entry)];
-    if (ended || chosen.r_mm < 0.0f) {
+    if (ended || chosen.found == 0u) {
         add_light(&ledger->roulette, a.kept - a.missed);
         end_path(&rays[path], ledger, ended ? STOKES_FATE_ABSORBED : STOKES_FATE_MISSED_EXIT);
         return;

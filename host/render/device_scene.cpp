@@ -30,7 +30,7 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
 std::vector<bool> needed_media(const Scene& scene) {
     std::vector<bool> needed(scene.media.size(), false);
     for (const Material& material : scene.materials)
-        if (has_subsurface(material)) needed[static_cast<std::size_t>(material.medium)] = true;
+        if (const auto medium = medium_of(material)) needed[static_cast<std::size_t>(*medium)] = true;
     return needed;
 }
 
@@ -103,8 +103,8 @@ DeviceTables reserve_green_tables(const Device& device, const Scene& scene) {
         }
         for (const bool fresnel : {false, true}) {
             const auto owned = [&](const Material& material) {
-                return has_subsurface(material) && material.medium == static_cast<int>(m) &&
-                       material.fresnel == fresnel;
+                return medium_of(material) == static_cast<int>(m) &&
+                       reflects(material, Transport::conserving) == fresnel;
             };
             if (std::none_of(scene.materials.begin(), scene.materials.end(), owned)) continue;
             GreenOwner owner;
@@ -173,20 +173,20 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     rays = RayScene(device, all);
     triangles = Buffer<Triangle>(device, "triangles", all);
     shapes = Buffer<ShapeRecord>(device, "shapes", shape_records);
-    materials = Buffer<MaterialRecord>(device, "materials", material_records(scene));
+    materials = Buffer<MaterialRecord>(device, "materials", material_records(scene, scene.render.transport));
     textures = upload_textures(device, scene);
 
     light_probability = light_probabilities(scene);
     const LightTables tables_of_lights = light_tables(scene, light_probability, all, first_triangle);
     lights = Buffer<LightRecord>(device, "lights", tables_of_lights.records);
     light_areas = Buffer<float>(device, "light areas", tables_of_lights.areas);
-    light_surface_area_mm2 = tables_of_lights.surface_area_mm2;
+    light_spread = tables_of_lights.spread;
     light_count = static_cast<std::uint32_t>(scene.lights.size());
     transport = scene.render.transport;
     tables = make_tables(device, scene);
     if (integrates(scene)) integrated = upload_integrated_media(device, scene);
     has_fresnel = std::any_of(scene.materials.begin(), scene.materials.end(),
-                              [&](const Material& material) { return reflects(scene, material); });
+                              [&](const Material& material) { return reflects(material, scene.render.transport); });
     bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));
 
     const SceneExtent extent = scene_extent(scene);

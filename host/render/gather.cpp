@@ -20,8 +20,8 @@ Gather::Gather(const Device& device, const RayKernels& kernels, const CameraReco
 void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
                             const Buffer<Hit>& hits, const Buffer<FilmValue>& film) {
     collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes, scene.materials,
-                           scene.emitted, scene.textures.records, scene.textures.texels, scene.textures.uv, points_,
-                           film);
+                           scene.lights, scene.emitted, scene.textures.records, scene.textures.texels,
+                           scene.textures.uv, points_, film);
 }
 
 void Gather::add_direct_light(const DeviceScene& on_device, const GatherScene& scene, const Buffer<PassConstants>& pass,

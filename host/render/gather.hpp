@@ -26,6 +26,7 @@ struct GatherScene {
     Buffer<Triangle> triangles;
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
+    Buffer<LightRecord> lights;
     Buffer<Flux16> spectra;  // row i: reflectance of material i at the pass's wavelengths
     Buffer<Flux16>
         emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]; beams: PassBuffers::radiance

@@ -25,7 +25,7 @@ PassMaker::PassMaker(const Device& device, const Scene& scene, const DeviceScene
       strata_(stratified_wavelengths(scene)),
       wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
     buffers_.constants = Buffer<PassConstants>(device, "pass constants", 1);
-    buffers_.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count());
+    buffers_.rows = Buffer<Flux16>(device, "spectra of the pass", SpectraLayout(scene).row_count);
     buffers_.photon_flux = Buffer<Flux16>(device, "photon flux of the lights", scene.lights.size());
     buffers_.radiance = Buffer<Flux16>(device, "radiance of the lights", scene.lights.size());
     buffers_.both_branches =
@@ -46,8 +46,8 @@ void PassMaker::make(std::uint32_t pass, std::uint32_t photons) {
 }
 
 void PassMaker::make(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons) {
-    spectra_ = make_pass_spectra(scene_, on_device_.light_probability, on_device_.light_surface_area_mm2, wavelengths,
-                                 pass, photons);
+    spectra_ =
+        make_pass_spectra(scene_, on_device_.light_probability, on_device_.light_spread, wavelengths, pass, photons);
     spectra_.constants.offset_mm = on_device_.offset_mm;
     spectra_.constants.low_discrepancy_exits = buffers_.cell_count > 0 ? 1u : 0u;
     buffers_.constants.upload(&spectra_.constants, 1);

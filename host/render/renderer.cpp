@@ -215,7 +215,7 @@ void Renderer::find_visible_points(const CameraRecord& camera) {
 }
 
 GatherScene Renderer::seen_scene() const {
-    return {on_device_.triangles, on_device_.shapes,        on_device_.materials,
+    return {on_device_.triangles, on_device_.shapes,        on_device_.materials, on_device_.lights,
             pass_.buffers().rows, pass_.buffers().radiance, on_device_.textures};
 }
 

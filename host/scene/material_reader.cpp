@@ -15,6 +15,7 @@ constexpr NumberRange dipole_eta_range{1.0, largest_dipole_eta};
 constexpr NumberRange sigma_t_range{smallest_sigma_t_per_mm, largest_sigma_t_per_mm};
 constexpr NumberRange scale_range{0.0, 1e6};
 constexpr NumberRange unit_range{0.0, 1.0};
+constexpr double fraction_rounding = 1e-9;  // 0.1, 0.2 and 0.7 may add up to a little more than 1
 // Where the renderer may ask for spectra.
 constexpr int first_lambda_nm = 300;
 constexpr int last_lambda_nm = 830;
@@ -66,10 +67,9 @@ std::shared_ptr<const Picture> read_texture(const std::string& path) {
 
 using TextureFiles = InputFiles<std::shared_ptr<const Picture>, read_texture>;
 
-Material read_diffuse(const JsonCursor& where, SpectrumReader& spectra, TextureFiles& textures) {
+DiffuseMaterial read_diffuse(const JsonCursor& where, SpectrumReader& spectra, TextureFiles& textures) {
     where.expect_keys(keys::material_diffuse);
-    Material material;
-    material.kind = MaterialKind::diffuse;
+    DiffuseMaterial material;
     const JsonCursor reflectance = where.at("reflectance");
     if (!reflectance.is(JsonValue::Type::object) || !reflectance.has("texture")) {
         material.reflectance = spectra.read(reflectance, Outside::hold, 1.0);
@@ -82,41 +82,61 @@ Material read_diffuse(const JsonCursor& where, SpectrumReader& spectra, TextureF
     return material;
 }
 
-void check_fresnel(const JsonCursor& fresnel, const Material& material, const Scene& scene) {
-    if (material.medium < 0) fresnel.fail("Fresnel reflection needs a medium and subsurface light");
-    const double eta = scene.media[static_cast<std::size_t>(material.medium)].eta;
+void check_fresnel(const JsonCursor& fresnel, const TranslucentMaterial& material, const Scene& scene) {
+    if (!material.medium) fresnel.fail("Fresnel reflection needs a medium and subsurface light");
+    const double eta = scene.media[static_cast<std::size_t>(*material.medium)].eta;
     if (eta > largest_green_eta)
         fresnel.fail(
             fmt::format("Fresnel reflection needs a medium with eta up to {:g}, got {:g}", largest_green_eta, eta));
 }
 
-Material read_translucent(const JsonCursor& where, const Scene& scene) {
+Dye read_dye(const JsonCursor& fluorophore, const JsonCursor& fraction, const Scene& scene) {
+    return {index_of_name(fluorophore, "fluorophores", scene.fluorophores), fraction.number(unit_range)};
+}
+
+// "fluorophores" with the share of each, or the short form for one: "fluorophore" and "fluorescent_fraction".
+std::vector<Dye> read_dyes(const JsonCursor& where, const Scene& scene) {
+    const auto list = where.find("fluorophores"), one = where.find("fluorophore");
+    const auto fraction = where.find("fluorescent_fraction");
+    if (list && (one || fraction))
+        list->fail("expected either this or \"fluorophore\" and \"fluorescent_fraction\", got both");
+    if (one && !fraction) where.fail("missing key \"fluorescent_fraction\", which belongs to a fluorophore");
+    if (one) return {read_dye(*one, *fraction, scene)};
+    if (fraction && fraction->number(unit_range) > 0.0)
+        fraction->fail("a fluorescent fraction without the key \"fluorophore\"");
+    std::vector<Dye> dyes;
+    if (!list) return dyes;
+    for (const JsonCursor& item : list->items()) {
+        item.expect_keys(keys::dye);
+        const Dye dye = read_dye(item.at("fluorophore"), item.at("fraction"), scene);
+        const auto same = [&](const Dye& other) { return other.fluorophore == dye.fluorophore; };
+        if (std::any_of(dyes.begin(), dyes.end(), same))
+            item.at("fluorophore").fail(fmt::format("\"{}\" given twice", item.at("fluorophore").text()));
+        dyes.push_back(dye);
+    }
+    if (dyes.empty()) list->fail_expected("one or more fluorophores");
+    if (const double sum = fluorescent_fraction(dyes); sum > 1.0 + fraction_rounding)
+        list->fail(fmt::format("expected fractions that add up to 1 at most, got {:g}", sum));
+    return dyes;
+}
+
+TranslucentMaterial read_translucent(const JsonCursor& where, const Scene& scene) {
     where.expect_keys(keys::material_translucent);
-    Material material;
-    material.kind = MaterialKind::translucent;
+    TranslucentMaterial material;
     const auto subsurface = where.find("subsurface");
-    material.subsurface = !subsurface || subsurface->boolean();
     const auto medium = where.find("medium");
     if (medium) material.medium = index_of_name(*medium, "media", scene.media);
-    if (!medium && material.subsurface) where.fail("missing key \"medium\", which subsurface light needs");
-    if (!material.subsurface) material.medium = -1;
+    if (subsurface && !subsurface->boolean())
+        material.medium.reset();
+    else if (!medium)
+        where.fail("missing key \"medium\", which subsurface light needs");
     if (const auto fresnel = where.find("fresnel")) {
         material.fresnel = fresnel->boolean();
         if (material.fresnel) check_fresnel(*fresnel, material, scene);
     }
-
-    const auto fluorophore = where.find("fluorophore");
-    const auto fraction = where.find("fluorescent_fraction");
-    if (fluorophore) {
-        material.fluorophore = index_of_name(*fluorophore, "fluorophores", scene.fluorophores);
-        if (!fraction) where.fail("missing key \"fluorescent_fraction\", which belongs to a fluorophore");
-    } else if (!material.subsurface) {
+    material.dyes = read_dyes(where, scene);
+    if (material.dyes.empty() && !material.medium)
         where.fail("missing key \"fluorophore\": without subsurface light it is all that this material does");
-    }
-    if (fraction) material.fluorescent_fraction = fraction->number(unit_range);
-    if (!fluorophore && material.fluorescent_fraction > 0.0) {
-        fraction->fail("a fluorescent fraction without the key \"fluorophore\"");
-    }
     return material;
 }
 
@@ -142,13 +162,13 @@ std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader
         Material material;
         switch (where.at("type").choice({"diffuse", "black", "translucent"})) {
             case 0:
-                material = read_diffuse(where, spectra, textures);
+                material.kind = read_diffuse(where, spectra, textures);
                 break;
             case 1:
                 where.expect_keys(keys::material_black);
                 break;
             default:
-                material = read_translucent(where, scene);
+                material.kind = read_translucent(where, scene);
         }
         material.name = name;
         result.push_back(std::move(material));

@@ -28,7 +28,10 @@ const ObjectKeys reflectance_texture{"reflectance_texture", {"texture", "black",
 const ObjectKeys material_diffuse{"material_diffuse", {"type", "reflectance"}, {}};
 const ObjectKeys material_black{"material_black", {"type"}, {}};
 const ObjectKeys material_translucent{
-    "material_translucent", {"type"}, {"medium", "fluorophore", "fluorescent_fraction", "subsurface", "fresnel"}};
+    "material_translucent",
+    {"type"},
+    {"medium", "fluorophore", "fluorescent_fraction", "fluorophores", "subsurface", "fresnel"}};
+const ObjectKeys dye{"dye", {"fluorophore", "fraction"}, {}};
 
 const ObjectKeys beam_disk{
     "beam_disk", {"type", "section", "position_mm", "direction", "radius_mm", "spectrum", "irradiance_W_m2"}, {"name"}};
@@ -88,6 +91,7 @@ std::vector<ObjectKeys> all_object_keys() {
             material_diffuse,
             material_black,
             material_translucent,
+            dye,
             beam_disk,
             beam_rectangle,
             emitter_rectangle,

@@ -19,7 +19,7 @@ extern const ObjectKeys scene, render, film, camera, crop;
 extern const ObjectKeys spectrum_file, spectrum_illuminant, spectrum_pairs, spectrum_constant;
 extern const ObjectKeys medium, fluorophore;
 extern const ObjectKeys reflectance_texture;
-extern const ObjectKeys material_diffuse, material_black, material_translucent;
+extern const ObjectKeys material_diffuse, material_black, material_translucent, dye;
 extern const ObjectKeys beam_disk, beam_rectangle, emitter_rectangle, emitter_disk, emitter_sphere;
 extern const ObjectKeys shape_mesh, shape_box, shape_sphere, shape_rectangle, shape_disk, shape_prism, shape_cylinder,
     shape_mask, shape_tiles, shape_sectors;

@@ -97,7 +97,7 @@ TEST_CASE("The schema has the reader's limits") {
     CHECK(property("scene", "transport").at("enum") == transport_words);
     CHECK(property("scene", "transport").at("default") ==
           transport_words[static_cast<std::size_t>(RenderSettings().transport)]);
-    CHECK(property("material_translucent", "fresnel").at("default") == Material().fresnel);
+    CHECK(property("material_translucent", "fresnel").at("default") == TranslucentMaterial().fresnel);
     CHECK(property("fluorophore", "quantum_yield").at("maximum") == 1);
     for (const char* key : {"left", "top", "width", "height"}) CHECK(property("crop", key).at("maximum") == 1);
     for (const char* key : {"width", "height"}) CHECK(property("crop", key).at("minimum") == 0.001);

@@ -29,7 +29,7 @@ TEST_CASE("light that grows without bound is cut and counted", "[overflow]") {
     Mesh mesh = make_sphere(30.0, 32);
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
     scene.shapes[0].mesh = mesh;
-    scene.lights[0].position_mm = {0.0, 5.0, 0.0};
+    std::get<DiskBeam>(scene.lights[0].kind).position_mm = {0.0, 5.0, 0.0};
     scene.camera.position_mm = {0.0, 0.0, 10.0};
     scene.camera.target_mm = {0.0, -20.0, 0.0};
     scene.render.photons_per_pass = 2000;

@@ -60,7 +60,7 @@ TEST_CASE("the maps of a flat slab hold the flux that the paper's model says", "
         const Scene scene = slab_scene(0.4, angle_deg);
         const DeviceScene on_device(device, scene);
         const std::uint32_t photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-        const PassSpectra spectra = make_pass_spectra(scene, {1.0}, on_device.light_surface_area_mm2, 3, photons);
+        const PassSpectra spectra = make_pass_spectra(scene, {1.0}, on_device.light_spread, 3, photons);
         PassConstants constants = spectra.constants;
         constants.offset_mm = on_device.offset_mm;
         const PassBuffers pass{

@@ -113,8 +113,7 @@ ProbeMaterial dyed_medium(double albedo, double eta) {
     const Spectrum shape = {{365.0, 390.0}, {2.5, 1.0}, Outside::hold};
     material.medium->sigma_s = shape.scaled(albedo);
     material.medium->sigma_a = shape.scaled(1.0 - albedo);
-    material.fluorophore = dye();
-    material.fluorescent_fraction = 0.6;
+    material.dyes = {{dye(), 0.6}};
     return material;
 }
 
@@ -126,8 +125,8 @@ void check_fluorescence(Transport transport, const std::vector<Case>& cases, dou
         const double mu = cosine_within(c.eta, cosine_of(c.angle_deg));
         const Exact elastic = exact_elastic(c.albedo, c.angle_deg, c.eta);
         const double escaping = escaping_share(c.eta, mu, c.albedo, 1.0 / 2.5).total;
-        const Fluorophore& dot = *material.fluorophore;
-        const double taken_up = material.fluorescent_fraction * dot.excitation.at(365);
+        const Fluorophore& dot = material.dyes[0].fluorophore;
+        const double taken_up = material.dyes[0].fraction * dot.excitation.at(365);
         const double photons = (1.0 - elastic.specular) * taken_up * dot.quantum_yield * escaping;
         const double emission = dot.emission.sum_1nm(300, 830);
         check_near(result.emitted_photons, photons, 0.0, errors);
@@ -308,14 +307,13 @@ TEST_CASE("the series over collisions gives Chandrasekhar's reflectance", "[prob
 // wavelengths that are in the set by chance.
 TEST_CASE("light that is taken up again and again is weighted right", "[probe]") {
     ProbeMaterial material = medium_of(1.0, 0.7);
-    material.fluorophore = dye();
-    material.fluorescent_fraction = 0.7;
+    material.dyes = {{dye(), 0.7}};
     ProbeSettings settings = settings_of(Transport::walk, 0.0, 500000);
     settings.first_collision_only = false;
     const ProbeResult result = measured(material, settings);
     CHECK(result.sets == 2);
 
-    const Fluorophore& dot = *material.fluorophore;
+    const Fluorophore& dot = material.dyes[0].fluorophore;
     const std::size_t count = result.lambda_nm.size();
     const double emission = dot.emission.sum_1nm(300, 830);
     const auto uptake = [&](std::size_t i) { return 0.7 * dot.excitation.at(result.lambda_nm[i]); };
@@ -352,10 +350,9 @@ TEST_CASE("light that is taken up again and again is weighted right", "[probe]")
 TEST_CASE("surface fluorescence leaves at the beam", "[probe]") {
     ProbeMaterial material;
     material.name = "paint";
-    material.fluorophore = dye();
-    material.fluorescent_fraction = 0.5;
+    material.dyes = {{dye(), 0.5}};
     const ProbeResult result = measured(material, settings_of(Transport::conserving, 20.0, 20000));
-    const double expected = 0.5 * material.fluorophore->excitation.at(365) * 0.9;
+    const double expected = 0.5 * material.dyes[0].fluorophore.excitation.at(365) * 0.9;
     CHECK(std::abs(result.emitted_photons.value - expected) <= 3.0 * result.emitted_photons.standard_error);
     CHECK(result.emitted_photons.standard_error < 0.01 * expected);
     CHECK(result.totals[probe_total].value == Approx(result.totals[probe_fluorescence].value));

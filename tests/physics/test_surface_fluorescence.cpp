@@ -24,13 +24,7 @@ Scene plane_scene(const Spectrum& irradiance) {
     scene.render.transport = Transport::paper;
     scene.file = "plane";
     scene.fluorophores = {overlapping()};
-    Material material;
-    material.name = "paint";
-    material.kind = MaterialKind::translucent;
-    material.fluorophore = 0;
-    material.fluorescent_fraction = 1.0;
-    material.subsurface = false;
-    scene.materials = {material};
+    scene.materials = {{"paint", TranslucentMaterial{std::nullopt, {{0, 1.0}}, false}}};
     add_shape(scene, "plane", 0, make_rectangle(1000.0, 1000.0));
     scene.lights = {disk_beam({0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, 80.0, irradiance)};
     scene.camera = camera_above({0.0, 0.0, 0.0}, 400.0, 60.0);
@@ -60,7 +54,7 @@ std::array<std::array<double, 16>, STOKES_MAP_COUNT> deposited(const Scene& scen
     const DeviceScene on_device(device, scene);
     const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
     const PassSpectra spectra =
-        make_pass_spectra(scene, on_device.light_probability, on_device.light_surface_area_mm2, pass, photons);
+        make_pass_spectra(scene, on_device.light_probability, on_device.light_spread, pass, photons);
     PassConstants constants = spectra.constants;
     constants.offset_mm = on_device.offset_mm;
     const PassBuffers buffers{

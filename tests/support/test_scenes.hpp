@@ -5,6 +5,9 @@
 
 namespace stokes {
 
+// That material, which is translucent.
+TranslucentMaterial& translucent_of(Scene& scene, std::size_t material = 0);
+
 // A closed sphere of diffuse reflectance that shines inward with radiance 1 W m^-2 sr^-1 nm^-1 at every wavelength, the
 // camera inside. Its radiance is 1 / (1 - reflectance) in every direction.
 Scene furnace_scene(double reflectance);
