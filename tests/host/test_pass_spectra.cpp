@@ -3,6 +3,8 @@
 
 #include "host/core/error.hpp"
 #include "host/image/colour.hpp"
+#include "host/render/device_lights.hpp"
+#include "host/render/device_materials.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/known_light.hpp"
@@ -113,6 +115,36 @@ TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
             CHECK(std::memcmp(&pass.rows[excitation + 1 + ex], &expected[ex], sizeof(Flux16)) == 0);
         }
     }
+}
+
+// Kernels take c times the rows: of 0.1 and 0.3 the rows are a quarter of the first dye's and three of the second's.
+TEST_CASE("the rows of several fluorophores are sums of each one's by its share", "[pass_spectra]") {
+    Scene scene = spectral_scene();
+    Fluorophore other = scene.fluorophores.front();
+    other.excitation = ramp(0.2, 0.7);
+    other.emission = ramp(0.4, 0.3);
+    scene.fluorophores.push_back(other);
+    scene.materials = {{"both", TranslucentMaterial{std::nullopt, {{0, 0.1}, {1, 0.3}}, false}},
+                       {"first", TranslucentMaterial{std::nullopt, {{0, 0.1}}, false}},
+                       {"second", TranslucentMaterial{std::nullopt, {{1, 0.3}}, false}}};
+    for (const Transport transport : {Transport::paper, Transport::conserving}) {
+        scene.render.transport = transport;
+        const SpectraLayout layout(scene);
+        const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), spread, 1, 100);
+        for (std::uint32_t row = 0; row < 17; ++row)
+            for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
+                const auto of = [&](std::size_t m) {
+                    return static_cast<double>(pass.rows[layout.excitation_row[m] + row].v[k]);
+                };
+                CHECK(of(0) == Approx(0.25 * of(1) + 0.75 * of(2)).epsilon(1e-6));
+            }
+        const std::vector<MaterialRecord> records = material_records(scene, transport);
+        CHECK(records[0].fluorescent_fraction == 0.4f);
+        CHECK(
+            (records[0].flags == STOKES_MATERIAL_FLUORESCENT && records[0].excitation_row == layout.excitation_row[0]));
+    }
+    CHECK(dye_weights({{0, 0.3}}) == std::vector<double>{1.0});
+    CHECK(dye_weights({{0, 0.0}, {1, 0.0}}) == std::vector<double>{0.5, 0.5});
 }
 
 // Photons come out as the quantum yield says, for each excitation wavelength: the mean over many sets of the row's sum

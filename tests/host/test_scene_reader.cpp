@@ -331,6 +331,25 @@ TEST_CASE("Surface fluorescence needs no medium") {
     CHECK(as_translucent(scene.materials[1])->dyes.front().fluorophore == 0);
 }
 
+TEST_CASE("A material may hold several fluorophores") {
+    const std::string one = R"("fluorophore": "dye", "fluorescent_fraction": 0.5)";
+    const auto dyes = [&](const std::string& text) {
+        std::string scene = base;
+        scene.replace(scene.find("\"fluorophores\": {"), 17,
+                      R"("fluorophores": {"ink": {"excitation": 1, "emission": 1}, )");
+        return as_translucent(parse_scene(scene.replace(scene.find(one), one.size(), text), "s.json").materials[1])
+            ->dyes;
+    };
+    const std::vector<Dye> both =
+        dyes(R"("fluorophores": [{"fluorophore": "dye", "fraction": 0.3}, {"fluorophore": "ink", "fraction": 0.7}])");
+    REQUIRE(both.size() == 2);
+    CHECK((both[0].fluorophore == 1 && both[0].fraction == 0.3));
+    CHECK((both[1].fluorophore == 0 && both[1].fraction == 0.7));
+    CHECK_THROWS_WITH(
+        dyes(R"("fluorophores": [{"fluorophore": "dye", "fraction": 0.3}, {"fluorophore": "ink", "fraction": 0.8}])"),
+        Catch::Contains("materials.glow.fluorophores: expected fractions that add up to 1 at most, got 1.1"));
+}
+
 TEST_CASE("An emitter may have a material of its own") {
     const Scene scene = scene_with("\"power_W\": 5", "\"power_W\": 5, \"material\": \"floor\"");
     CHECK(scene.shapes[1].material == 0);

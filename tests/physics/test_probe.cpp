@@ -360,6 +360,44 @@ TEST_CASE("surface fluorescence leaves at the beam", "[probe]") {
           Approx(result.totals[probe_fluorescence].value));
 }
 
+// Takes up and emits at longer wavelengths than dye().
+Fluorophore second_dye() {
+    Fluorophore fluorophore = dye();
+    fluorophore.name = "second dye";
+    fluorophore.excitation = {{300.0, 450.0, 560.0}, {0.3, 0.6, 0.0}, Outside::zero};
+    fluorophore.emission = {{460.0, 500.0, 600.0}, {0.0, 1.0, 0.0}, Outside::zero};
+    fluorophore.quantum_yield = 0.5;
+    return fluorophore;
+}
+
+// What two fluorophores send back of each photon that meets them is c E QY of the one and of the other, each with its
+// own spectrum: on the surface all of it leaves; below it, with one collision that counts, the share that escapes from
+// where light of 1/2.5 mm mean free path collides first.
+TEST_CASE("two fluorophores emit the sum of what each of them does", "[probe]") {
+    for (const bool surface : {true, false}) {
+        ProbeMaterial material = dyed_medium(0.5, 1.0);
+        if (surface) material.medium.reset();
+        material.dyes = {{dye(), 0.3}, {second_dye(), 0.5}};
+        const ProbeResult result = measured(material, settings_of(Transport::conserving, 20.0, 200000));
+        const double escaping = surface ? 1.0 : escaping_share(1.0, cosine_of(20.0), 0.5, 1.0 / 2.5).total;
+        const auto photons = [&](const ProbeDye& of) {
+            return of.fraction * of.fluorophore.excitation.at(365) * of.fluorophore.quantum_yield * escaping;
+        };
+        CAPTURE(surface);
+        check_near(result.emitted_photons, photons(material.dyes[0]) + photons(material.dyes[1]));
+        for (std::size_t i = 0; i < result.lambda_nm.size(); ++i) {
+            double expected = 0.0;
+            for (const ProbeDye& of : material.dyes)
+                expected += photons(of) * of.fluorophore.emission.at(result.lambda_nm[i]) /
+                            of.fluorophore.emission.sum_1nm(300, 830) * 365.0 / result.lambda_nm[i];
+            const Measured& m = result.reflectance[probe_fluorescence][i];
+            CAPTURE(result.lambda_nm[i], m.value, m.standard_error, expected);
+            CHECK(std::abs(m.value - expected) <= 4.0 * m.standard_error);
+            CHECK(m.standard_error <= 0.01 * expected);
+        }
+    }
+}
+
 // The half-space has no length but the mean free path.
 TEST_CASE("the probe does not depend on the unit of length", "[probe]") {
     for (const Transport transport : {Transport::conserving, Transport::walk}) {

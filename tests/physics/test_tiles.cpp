@@ -41,7 +41,7 @@ Scene two_tiles(Transport transport, int other) {
     }
     scene.body_count = 1;
     scene.render.photons_per_pass = 16384;
-    Light& beam = scene.lights[0];
+    Beam& beam = std::get<DiskBeam>(scene.lights[0].kind);
     beam.position_mm.x = -border_mm;
     beam.half_u_mm *= 0.01;
     beam.half_v_mm *= 0.01;
