@@ -6,6 +6,7 @@
 #include "lib/rng.clh"
 #include "lib/surface.clh"
 #include "lib/surface_normal.clh"
+#include "shared/arguments.h"
 #include "shared/material.h"
 #include "shared/pass.h"
 #include "shared/path.h"
@@ -23,20 +24,25 @@ FORCE_INLINE float3 hit_position(Ray ray, Hit hit, __global const Triangle* tri)
     return along ? origin + direction * hit.t : v0 + e1 * hit.u + e2 * hit.v;
 }
 
+// Where a path of this event is listed; transport: of the material.
+FORCE_INLINE uint list_of(uint event, uint transport) {
+    if (event == STOKES_EVENT_DIFFUSE) return STOKES_LIST_DIFFUSE;
+    if (event >= STOKES_EVENT_FLUORESCENCE) return STOKES_LIST_BELOW(transport, event);
+    return event == STOKES_EVENT_SPECULAR ? STOKES_LIST_NONE : STOKES_LIST_ENDED;
+}
+
 // Work-items: round.count, one an entry of list.
 // Reads: list [round.count], hits, flux [W/nm, paths], triangles, shapes, materials, spectra (excitation, sigma_t).
-// Writes: points [paths], kinds [round.count]: STOKES_EVENT_*, ledgers (paths that end here), rays (specular
+// Writes: points [paths], entry_lists [round.count]: STOKES_LIST_*, ledgers (paths that end here), rays (specular
 //   reflection; a mirrored path goes on with the flux it has).
 // Light that meets the back of a surface is absorbed, unless it is two-sided.
-__kernel void classify_photons(EventRound round, __global const PassConstants* pass, __global const uint* list,
-                               __global Ray* rays, __global const Hit* hits, __global const float16* flux,
-                               __global const Triangle* triangles, __global const MaterialRecord* materials,
-                               __global const ShapeRecord* shapes, __global const float16* spectra,
-                               __global SurfacePoint* points, __global PathLedger* ledgers, __global uchar* kinds) {
+__kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, __global const uint* list,
+                               PATH_ARGUMENTS, __global const Hit* hits, __global SurfacePoint* points,
+                               __global uchar* entry_lists) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint path = list[i];
-    kinds[i] = (uchar)STOKES_EVENT_NONE;
+    entry_lists[i] = (uchar)STOKES_LIST_ENDED;
     __global PathLedger* ledger = &ledgers[path];
     if (ledger->fate != STOKES_FATE_ALIVE) return;
     const float2 total = light_of(flux[path], pass);
@@ -72,67 +78,62 @@ __kernel void classify_photons(EventRound round, __global const PassConstants* p
         add_light(&ledger->absorbed, total);
         ledger->fate = STOKES_FATE_ABSORBED;
     }
-    kinds[i] = (uchar)kind;
+    entry_lists[i] = (uchar)list_of(kind, materials[material].transport);
 }
 
 // Work-items: chunks of chunk_size list entries.
-// Reads: kinds [count]. Writes: chunk_counts [chunks]: entries of each kind in the chunk.
-__kernel void count_lists(uint count, uint chunk_size, __global const uchar* kinds, __global ListCounts* chunk_counts) {
+// Reads: entry_lists [count]. Writes: chunk_counts [chunks]: entries of each list in the chunk.
+__kernel void count_lists(uint count, uint chunk_size, __global const uchar* entry_lists,
+                          __global ListCounts* chunk_counts) {
     const uint chunk = (uint)get_global_id(0);
     const uint first = chunk * chunk_size;
     if (first >= count) return;
-    const uint last = min(first + chunk_size, count);
-    uint alive = 0u, diffuse = 0u, fluorescence = 0u, elastic = 0u, branches = 0u;
-    for (uint i = first; i < last; ++i) {
-        const uint kind = (uint)kinds[i];
-        alive += (uint)(kind != STOKES_EVENT_NONE);
-        diffuse += (uint)(kind == STOKES_EVENT_DIFFUSE);
-        fluorescence += (uint)(kind == STOKES_EVENT_FLUORESCENCE);
-        elastic += (uint)(kind == STOKES_EVENT_ELASTIC);
-        branches += (uint)(kind == STOKES_EVENT_BRANCHES);
+    ListCounts counts = {0u, {0u}, {0u}, {0u}};
+    for (uint i = first; i < min(first + chunk_size, count); ++i) {
+        const uint list = (uint)entry_lists[i];
+        counts.alive += (uint)(list != STOKES_LIST_ENDED);
+        if (list < STOKES_LIST_COUNT) counts.count[list] += 1u;
     }
-    chunk_counts[chunk] = (ListCounts){alive, diffuse, fluorescence, elastic, branches};
+    chunk_counts[chunk] = counts;
 }
 
-// Work-items: 1. Turns chunk_counts [chunks] into where each chunk's entries start; writes totals [1].
+// Work-items: 1. Reads and writes chunk_counts [chunks]: alive and first become where the chunk's entries start. Writes
+// totals [1]. The lists stand one behind the other.
 __kernel void scan_lists(uint chunks, __global ListCounts* chunk_counts, __global ListCounts* totals) {
     if (get_global_id(0) != 0) return;
-    ListCounts sum = {0u, 0u, 0u, 0u, 0u};
+    ListCounts sum = {0u, {0u}, {0u}, {0u}};
+    for (uint chunk = 0u; chunk < chunks; ++chunk)
+        for (uint list = 0u; list < STOKES_LIST_COUNT; ++list) sum.count[list] += chunk_counts[chunk].count[list];
+    for (uint list = 1u; list < STOKES_LIST_COUNT; ++list)
+        sum.first[list] = sum.first[list - 1u] + sum.count[list - 1u];
+    ListCounts at = sum;
     for (uint chunk = 0u; chunk < chunks; ++chunk) {
-        const ListCounts here = chunk_counts[chunk];
-        chunk_counts[chunk] = sum;
-        sum.alive += here.alive;
-        sum.diffuse += here.diffuse;
-        sum.fluorescence += here.fluorescence;
-        sum.elastic += here.elastic;
-        sum.branches += here.branches;
+        const uint alive = chunk_counts[chunk].alive;
+        chunk_counts[chunk].alive = at.alive;
+        at.alive += alive;
+        for (uint list = 0u; list < STOKES_LIST_COUNT; ++list) {
+            chunk_counts[chunk].first[list] = at.first[list];
+            at.first[list] += chunk_counts[chunk].count[list];
+        }
     }
+    sum.alive = at.alive;
     totals[0] = sum;
 }
 
 // Work-items: chunks of chunk_size list entries.
-// Reads: list, kinds [count], chunk_counts [chunks] from scan_lists.
-// Writes: the paths of each kind in list order: alive, diffuse, fluorescence, elastic, branches.
-__kernel void write_lists(uint count, uint chunk_size, __global const uint* list, __global const uchar* kinds,
-                          __global const ListCounts* chunk_counts, __global uint* alive, __global uint* diffuse,
-                          __global uint* fluorescence, __global uint* elastic, __global uint* branches) {
+// Reads: list, entry_lists [count], chunk_counts [chunks] from scan_lists.
+// Writes: next_alive: the paths that go on; event_lists: those of each list, both in the order of list.
+__kernel void write_lists(uint count, uint chunk_size, __global const uint* list, __global const uchar* entry_lists,
+                          __global const ListCounts* chunk_counts, __global uint* next_alive,
+                          __global uint* event_lists) {
     const uint chunk = (uint)get_global_id(0);
     const uint first = chunk * chunk_size;
     if (first >= count) return;
-    const uint last = min(first + chunk_size, count);
     ListCounts at = chunk_counts[chunk];
-    for (uint i = first; i < last; ++i) {
-        const uint kind = (uint)kinds[i];
-        if (kind == STOKES_EVENT_NONE) continue;
-        const uint path = list[i];
-        alive[at.alive++] = path;
-        if (kind == STOKES_EVENT_DIFFUSE)
-            diffuse[at.diffuse++] = path;
-        else if (kind == STOKES_EVENT_FLUORESCENCE)
-            fluorescence[at.fluorescence++] = path;
-        else if (kind == STOKES_EVENT_ELASTIC)
-            elastic[at.elastic++] = path;
-        else if (kind == STOKES_EVENT_BRANCHES)
-            branches[at.branches++] = path;
+    for (uint i = first; i < min(first + chunk_size, count); ++i) {
+        const uint into = (uint)entry_lists[i];
+        if (into == STOKES_LIST_ENDED) continue;
+        next_alive[at.alive++] = list[i];
+        if (into < STOKES_LIST_COUNT) event_lists[at.first[into]++] = list[i];
     }
 }

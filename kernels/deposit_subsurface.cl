@@ -11,6 +11,7 @@
 #include "lib/power_table.clh"
 #include "lib/reradiation.clh"
 #include "lib/retrace.clh"
+#include "shared/arguments.h"
 #include "shared/material.h"
 #include "shared/photon.h"
 
@@ -89,21 +90,19 @@ FORCE_INLINE Random4 low_discrepancy_draw(EventSample words, uint seed, uint str
     return draw;
 }
 
-// Work-items: round.count, one an entry of list.
-// Reads: list, points, rays (incident direction), materials, spectra (sigma_t), table_shapes [3 a medium], mean_rows
-// and
+// Work-items: round.count, one an entry of its list.
+// Reads: event_lists, points, rays (incident direction), materials, spectra (sigma_t), table_shapes [3 a medium],
+// mean_rows and
 //   cumulative_rows of the distance samplers, event_samples [paths] where pass->low_discrepancy_exits has them.
 // Writes: exits and probes at round.first_exit + i round.exits and on: round.exits points of the tangent plane, as
 //   round.sampler has it. Without subsurface: the entry itself, once, from which nothing leaves scattered.
-__kernel void sample_exits(EventRound round, __global const PassConstants* pass, __global const uint* list,
-                           __global const SurfacePoint* points, __global const Ray* rays,
-                           __global const MaterialRecord* materials, __global const float16* spectra,
-                           __global const TableShape* table_shapes, __global const float* mean_rows,
-                           __global const float* cumulative_rows, __global const EventSample* event_samples,
+__kernel void sample_exits(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, TABLE_ARGUMENTS,
+                           __global const uint* event_lists, __global const SurfacePoint* points,
+                           __global const Ray* rays, __global const EventSample* event_samples,
                            __global ExitPoint* exits, __global Probe* probes) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
-    const uint path = list[i];
+    const uint path = event_lists[round.first_entry + i];
     const SurfacePoint point = points[path];
     const float3 entry = (float3)(point.x, point.y, point.z), normal = (float3)(point.nx, point.ny, point.nz);
     __global const MaterialRecord* material = &materials[point.material];
@@ -142,11 +141,11 @@ __kernel void sample_exits(EventRound round, __global const PassConstants* pass,
 
 // Work-items: count exits. Reads: probes, hits of trace_probe, triangles.
 // Writes: position and normal of exits; found = 0 where the probe found no surface.
-__kernel void place_exits(uint count, __global const Probe* probes, __global const Hit* hits,
-                          __global const Triangle* triangles, __global ExitPoint* exits) {
+__kernel void place_exits(uint count, __global const Triangle* triangles, __global const Probe* probes,
+                          __global const Hit* probe_hits, __global ExitPoint* exits) {
     const uint i = (uint)get_global_id(0);
     if (i >= count || probes[i].body == STOKES_NONE) return;
-    const Hit hit = hits[i];
+    const Hit hit = probe_hits[i];
     if (hit.triangle == STOKES_NONE) {
         exits[i].found = 0u;
         return;
@@ -236,12 +235,12 @@ FORCE_INLINE float16 let_through(const ExitPoint* exit_point, uint exit_index, c
 //   pass's wavelengths, or with STOKES_SAMPLER_INTEGRATED what integrate_power wrote for each exit; flux of the
 //   arriving photons [W/nm]; points [paths], for the body that they entered.
 // Writes: the map's slots from round.first_slot on, one an exit: flux that leaves there (`paper`: eq. 3, 4 or 5),
-//   ExitPoint.kept and .event_light, ledgers (stored, dropped deposits, the leader of re-emitted light).
-__kernel void deposit_exits(EventRound round, __global const PassConstants* pass, __global const SurfacePoint* points,
-                            __global const MaterialRecord* materials, __global const float16* spectra,
-                            __global const TableShape* table_shapes, __global const float16* table16,
-                            __global ExitPoint* exits, __global const float16* flux, __global PathLedger* ledgers,
-                            __global PhotonHead* heads, __global float16* map_flux) {
+//   exit_flux, the same by exit, which the path takes along; ExitPoint.kept and .event_light, ledgers (stored, dropped
+//   deposits, the leader of re-emitted light).
+__kernel void deposit_exits(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, TABLE_ARGUMENTS,
+                            __global const SurfacePoint* points, __global const float16* flux,
+                            __global PathLedger* ledgers, __global ExitPoint* exits, __global float16* exit_flux,
+                            MAP_ARGUMENTS) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint first = round.first_exit + i * round.exits;
@@ -272,10 +271,12 @@ __kernel void deposit_exits(EventRound round, __global const PassConstants* pass
         const uint slot = round.first_slot + i * round.exits + k;
         if (slot < round.slot_limit) {
             const float3 normal = (float3)(exit_point.nx, exit_point.ny, exit_point.nz);
-            heads[slot] = (PhotonHead){exit_point.x, exit_point.y, exit_point.z,
-                                       kept.x * share > 0.0f && sound ? pack_normal(normal, body) : STOKES_EMPTY_SLOT};
+            map_heads[slot] =
+                (PhotonHead){exit_point.x, exit_point.y, exit_point.z,
+                             kept.x * share > 0.0f && sound ? pack_normal(normal, body) : STOKES_EMPTY_SLOT};
             map_flux[slot] = leaving * share;
         }
+        exit_flux[first + k] = leaving * share;
         if (!found)
             ledger->missed_exits += (uint)(kept.x > 0.0f);
         else if (slot < round.slot_limit && sound)

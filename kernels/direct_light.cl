@@ -6,6 +6,7 @@
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
 #include "lib/texture.clh"
+#include "shared/arguments.h"
 #include "shared/gather.h"
 #include "shared/light.h"
 #include "shared/material.h"
@@ -64,16 +65,13 @@ FORCE_INLINE uint pick_light(__global const LightRecord* lights, uint light_coun
 // surface lights [W mm^-2 sr^-1 nm^-1], irradiance across beams [W mm^-2 nm^-1]; spectra (row i: reflectance of
 // material i, without its texture), textures, pass (seed, pass, offset_mm, to_x, to_y, to_z). Adds to
 // film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2], in the surface layer.
-__kernel void add_direct_light(__global const GatherPoint* points, uint count, __global const PassConstants* pass,
-                               __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
-                               __global const Triangle* triangles, __global const ShapeRecord* shapes, uint light_count,
-                               __global const LightRecord* lights, __global const float* light_areas,
-                               __global const float16* emission, __global const float16* spectra,
-                               __global const TextureRecord* texture_records, __global float4* film) {
+__kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, SURFACE_ARGUMENTS, LIGHT_ARGUMENTS,
+                               __global const float16* light_radiance, TEXTURE_ARGUMENTS,
+                               __global const GatherPoint* gather_points, __global float4* film) {
     const uint i = (uint)get_global_id(0);
-    if (i >= count || (points[i].maps & (1u << STOKES_MAP_SURFACE)) == 0u) return;
-    const GatherPoint point = points[i];
-    const BvhScene scene = {nodes, blocks, grid};
+    if (i >= count || (gather_points[i].maps & (1u << STOKES_MAP_SURFACE)) == 0u) return;
+    const GatherPoint point = gather_points[i];
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const float3 at = (float3)(point.x, point.y, point.z), normal = (float3)(point.nx, point.ny, point.nz);
     const LitPoint to = {at, normal, at + normal * pass->offset_mm};
     const Lights of_scene = {lights, light_areas, triangles};
@@ -90,7 +88,7 @@ __kernel void add_direct_light(__global const GatherPoint* points, uint count, _
                                         times_picked(lights, light_count, l), pass->offset_mm, to);
         near |= shadow.near;
         if (!(shadow.factor > 0.0f)) continue;
-        const float4 lit = film_value(emission[l] * reflected, pass);
+        const float4 lit = film_value(light_radiance[l] * reflected, pass);
         if (lit.x + lit.y + lit.z > 0.0f && !bvh_any(scene, shadow.ray)) sum += shadow.factor * lit;
     }
     if (near) {
@@ -102,7 +100,7 @@ __kernel void add_direct_light(__global const GatherPoint* points, uint count, _
         const uint l = hit.triangle == STOKES_NONE ? STOKES_NONE : shapes[triangles[hit.triangle].shape].light;
         if (l != STOKES_NONE)
             sum += factor_where_met(of_scene, l, hit.triangle, hit.t, d, times_picked(lights, light_count, l), to) *
-                   film_value(emission[l] * reflected, pass);
+                   film_value(light_radiance[l] * reflected, pass);
     }
     film[STOKES_MAP_SURFACE * count + point.pixel] += sum;
 }

@@ -4,6 +4,7 @@
 #include "lib/light_sum.clh"
 #include "lib/lights.clh"
 #include "lib/rng.clh"
+#include "shared/arguments.h"
 #include "shared/light.h"
 #include "shared/pass.h"
 #include "shared/path.h"
@@ -46,10 +47,8 @@ FORCE_INLINE void start_path(uint path, EmittedRay ray, float16 photon_flux, __g
 // Writes: rays, flux [W/nm], ledgers, list [paths].
 // A light is chosen by its probability; a surface emits cosine-distributed from a point uniform in area, a beam
 // emits parallel light from a point uniform over its cross-section.
-__kernel void emit_photons(__global const PassConstants* pass, uint light_count, __global const LightRecord* lights,
-                           __global const float* light_areas, __global const Triangle* triangles,
-                           __global const float16* photon_flux, __global Ray* rays, __global float16* flux,
-                           __global PathLedger* ledgers, __global uint* list) {
+__kernel void emit_photons(__global const PassConstants* pass, LIGHT_ARGUMENTS, __global const Triangle* triangles,
+                           __global const float16* photon_flux, PATH_ARGUMENTS, __global uint* list) {
     const uint path = (uint)get_global_id(0);
     if (path >= pass->photons) return;
     const Random4 at = random4(pass->seed, pass->pass, path, 0u, RNG_EMIT_POSITION);
@@ -68,11 +67,9 @@ __kernel void emit_photons(__global const PassConstants* pass, uint light_count,
 // that
 //   start in it.
 // The photons of a cell lie on it as the points of a low-discrepancy sequence that goes on from pass to pass.
-__kernel void emit_stratified(__global const PassConstants* pass, uint cell_count, __global const EmissionCell* cells,
-                              __global const uint* first_photons, __global const LightRecord* lights,
-                              __global const float* light_areas, __global const Triangle* triangles,
-                              __global const float16* photon_flux, __global Ray* rays, __global float16* flux,
-                              __global PathLedger* ledgers, __global uint* list, __global EventSample* event_samples) {
+__kernel void emit_stratified(__global const PassConstants* pass, EMISSION_ARGUMENTS, LIGHT_ARGUMENTS,
+                              __global const Triangle* triangles, __global const float16* photon_flux, PATH_ARGUMENTS,
+                              __global uint* list, __global EventSample* event_samples) {
     const uint path = (uint)get_global_id(0);
     if (path >= pass->photons) return;
     const uint c = cell_of_photon(first_photons, cell_count, path);
@@ -89,8 +86,7 @@ __kernel void emit_stratified(__global const PassConstants* pass, uint cell_coun
 
 // Work-items: pass->photons, one a path. Reads as emit_stratified. Writes: where that starts them: cell_of_path [paths]
 // and places [paths] in the cube of the cell's light.
-__kernel void find_places(__global const PassConstants* pass, uint cell_count, __global const EmissionCell* cells,
-                          __global const uint* first_photons, __global const LightRecord* lights,
+__kernel void find_places(__global const PassConstants* pass, EMISSION_ARGUMENTS, __global const LightRecord* lights,
                           __global uint* cell_of_path, __global float4* places) {
     const uint path = (uint)get_global_id(0);
     if (path >= pass->photons) return;

@@ -2,6 +2,7 @@
 #include "lib/bvh.clh"
 #include "lib/inline.clh"
 #include "lib/probe.clh"
+#include "shared/arguments.h"
 #include "shared/pass.h"
 #include "shared/path.h"
 #include "shared/ray.h"
@@ -18,12 +19,11 @@ FORCE_INLINE float3 triangle_normal(__global const Triangle* tri) {
 // A point of the plane that lies beyond the edge by x comes to lie on the face behind the edge, at x from it, as a
 // sheet of paper does when it is folded down: light that would have left beyond the edge leaves through that face. The
 // edge is found by a ray that comes back from the point towards the entry, a little below the plane.
-__kernel void fold_exits(uint count, __global const PassConstants* pass, __global const BvhNode* nodes,
-                         __global const BvhBlock* blocks, BvhGrid grid, __global const Triangle* triangles,
-                         __global const Probe* probes, __global ExitPoint* exits) {
+__kernel void fold_exits(uint count, __global const PassConstants* pass, RAY_SCENE_ARGUMENTS,
+                         __global const Triangle* triangles, __global const Probe* probes, __global ExitPoint* exits) {
     const uint i = (uint)get_global_id(0);
     if (i >= count || exits[i].found != 0u) return;
-    const BvhScene scene = {nodes, blocks, grid};
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const uint body = probes[i].body;
     const BvhFilter front = {BVH_FRONT, body, triangles};
     const float least = 16.0f * pass->offset_mm;

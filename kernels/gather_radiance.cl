@@ -8,6 +8,7 @@
 #include "lib/surface_normal.clh"
 #include "lib/texture.clh"
 #include "lib/tiles.clh"
+#include "shared/arguments.h"
 #include "shared/camera.h"
 #include "shared/material.h"
 #include "shared/pass.h"
@@ -19,12 +20,10 @@
 // Reads rays, hits [width * height], triangles, shapes, materials, lights, textures of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
 // Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
-__kernel void collect_points(CameraRecord camera, __global const PassConstants* pass, __global const Ray* rays,
-                             __global const Hit* hits, __global const Triangle* triangles,
-                             __global const ShapeRecord* shapes, __global const MaterialRecord* materials,
-                             __global const LightRecord* lights, __global const float16* emitted,
-                             __global const TextureRecord* texture_records, __global const float* texels,
-                             __global const TriangleUv* uv, __global GatherPoint* points, __global float4* film) {
+__kernel void collect_points(CameraRecord camera, __global const PassConstants* pass, SURFACE_ARGUMENTS,
+                             LIGHT_ARGUMENTS, __global const float16* light_radiance, TEXTURE_ARGUMENTS,
+                             __global const Ray* rays, __global const Hit* hits, __global GatherPoint* gather_points,
+                             __global float4* film) {
     const uint i = (uint)get_global_id(0);
     const uint pixels = camera.width * camera.height;
     if (i >= pixels) return;
@@ -49,7 +48,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
         point.nz = normal.z;
         point.material = shape.material;
         point.body = t.body;
-        const Textures textures = {texture_records, texels, uv};
+        const Textures textures = {texture_records, texels, texture_uv};
         point.luminance = texture_luminance(textures, shape.material, hit);
         const float cos_in = -(normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz);
         if (cos_in > 0.0f) {
@@ -58,10 +57,10 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
             point.weight = seen.weight;
             if (shape.light != STOKES_NONE)
                 film[STOKES_MAP_SURFACE * pixels + point.pixel] +=
-                    film_value(radiance_of(&lights[shape.light], emitted[shape.light]) / seen.share, pass);
+                    film_value(radiance_of(&lights[shape.light], light_radiance[shape.light]) / seen.share, pass);
         }
     }
-    points[i] = point;
+    gather_points[i] = point;
 }
 
 // Work-items: one per point; launched once per map and class of radii: of points whose radius_factor is in
@@ -70,19 +69,18 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
 // Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
 // material i, without its texture), textures, pass (to_x, to_y, to_z).
 // Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
-__kernel void gather_radiance(__global const GatherPoint* points, uint count, uint map, float largest_factor,
-                              HashGrid grid, __global const uint* cell_starts, __global const float* positions,
-                              __global const uint* normals, __global const float16* flux,
-                              __global const float16* spectra, __global const TextureRecord* texture_records,
-                              __global const PassConstants* pass, __global float4* film) {
+__kernel void gather_radiance(uint count, uint map, float largest_factor, PASS_ARGUMENTS, SORTED_MAP_ARGUMENTS,
+                              __global const TextureRecord* texture_records, __global const GatherPoint* gather_points,
+                              __global float4* film) {
     const uint i = (uint)get_global_id(0);
-    if (i >= count || (points[i].maps & (1u << map)) == 0u) return;
-    const float factor = points[i].radius_factor / largest_factor;
+    if (i >= count || (gather_points[i].maps & (1u << map)) == 0u) return;
+    const float factor = gather_points[i].radius_factor / largest_factor;
     if (!(factor > 0.5f && factor <= 1.0f)) return;
-    const GatherPoint point = points[i];
-    const float radius = grid.radius_mm * factor;
-    const float16 sum = sum_flux(grid, cell_starts, positions, normals, flux, (float3)(point.x, point.y, point.z),
-                                 (float3)(point.nx, point.ny, point.nz), point.body, radius);
+    const GatherPoint point = gather_points[i];
+    const float radius = hash_grid.radius_mm * factor;
+    const float16 sum =
+        sum_flux(hash_grid, cell_starts, positions, normals, sorted_flux, (float3)(point.x, point.y, point.z),
+                 (float3)(point.nx, point.ny, point.nz), point.body, radius);
     float16 radiance = sum * (point.weight * M_1_PI_F * M_1_PI_F / (radius * radius));
     if (map == STOKES_MAP_SURFACE)
         radiance *= textured_reflectance(texture_records, spectra, point.material, point.luminance);

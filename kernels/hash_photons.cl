@@ -2,19 +2,20 @@
 // STOKES_HASH_BUCKETS runs of keys, then by key within each. Chunks of slots count and scatter apart from one
 // another, so there are no atomics, and the order in a cell is the order of the slots whatever the device.
 #include "lib/hash_grid.clh"
+#include "shared/arguments.h"
 #include "shared/photon.h"
 
 // Work-items: slots. Reads heads[slots]. Writes keys[slots], STOKES_NONE for a slot without a photon.
-__kernel void find_keys(__global const PhotonHead* heads, uint slots, HashGrid grid, __global uint* keys) {
+__kernel void find_keys(uint slots, HashGrid hash_grid, __global const PhotonHead* map_heads, __global uint* keys) {
     const uint i = (uint)get_global_id(0);
     if (i >= slots) return;
-    const uint key = grid_key(grid, heads[i].x, heads[i].y, heads[i].z);
-    keys[i] = heads[i].normal == STOKES_EMPTY_SLOT ? STOKES_NONE : key;
+    const uint key = grid_key(hash_grid, map_heads[i].x, map_heads[i].y, map_heads[i].z);
+    keys[i] = map_heads[i].normal == STOKES_EMPTY_SLOT ? STOKES_NONE : key;
 }
 
 // Work-items: STOKES_HASH_CHUNKS. Chunk c counts its photons per bucket.
 // Reads keys[slots]. Writes histograms[STOKES_HASH_CHUNKS][STOKES_HASH_BUCKETS].
-__kernel void count_buckets(__global const uint* keys, uint slots, HashGrid grid, __global uint* histograms) {
+__kernel void count_buckets(uint slots, HashGrid hash_grid, __global const uint* keys, __global uint* histograms) {
     const uint chunk = (uint)get_global_id(0);
     if (chunk >= STOKES_HASH_CHUNKS) return;
     __global uint* counts = histograms + chunk * STOKES_HASH_BUCKETS;
@@ -22,7 +23,7 @@ __kernel void count_buckets(__global const uint* keys, uint slots, HashGrid grid
     const uint length = (slots + STOKES_HASH_CHUNKS - 1u) / STOKES_HASH_CHUNKS;
     const uint end = min(slots, (chunk + 1u) * length);
     for (uint i = chunk * length; i < end; ++i)
-        if (keys[i] != STOKES_NONE) ++counts[keys[i] >> grid.bucket_shift];
+        if (keys[i] != STOKES_NONE) ++counts[keys[i] >> hash_grid.bucket_shift];
 }
 
 // Work-items: STOKES_HASH_BUCKETS / 16, a bucket a lane. Each bucket's counts become the number of its
@@ -54,8 +55,8 @@ __kernel void scan_buckets(__global uint* bucket_starts) {
 
 // Work-items: STOKES_HASH_CHUNKS. Chunk c writes its photons behind those of earlier chunks, bucket by
 // bucket. Reads keys[slots], bucket_starts. Uses up histograms. Writes entries[photons] = (key, slot).
-__kernel void scatter_slots(__global const uint* keys, uint slots, HashGrid grid, __global const uint* bucket_starts,
-                            __global uint* histograms, __global uint2* entries) {
+__kernel void scatter_slots(uint slots, HashGrid hash_grid, __global const uint* keys,
+                            __global const uint* bucket_starts, __global uint* histograms, __global uint2* entries) {
     const uint chunk = (uint)get_global_id(0);
     if (chunk >= STOKES_HASH_CHUNKS) return;
     __global uint* next = histograms + chunk * STOKES_HASH_BUCKETS;
@@ -64,18 +65,18 @@ __kernel void scatter_slots(__global const uint* keys, uint slots, HashGrid grid
     const uint end = min(slots, (chunk + 1u) * length);
     for (uint i = chunk * length; i < end; ++i) {
         const uint key = keys[i];
-        if (key != STOKES_NONE) entries[next[key >> grid.bucket_shift]++] = (uint2)(key, i);
+        if (key != STOKES_NONE) entries[next[key >> hash_grid.bucket_shift]++] = (uint2)(key, i);
     }
 }
 
 // Work-items: STOKES_HASH_BUCKETS. Each bucket sorts its photons by key and finds where its cells start.
 // Reads entries[photons], bucket_starts. Writes order[photons] = slot, cell_starts[keys + 1].
-__kernel void sort_buckets(__global const uint2* entries, __global const uint* bucket_starts, HashGrid grid,
+__kernel void sort_buckets(HashGrid hash_grid, __global const uint2* entries, __global const uint* bucket_starts,
                            __global uint* cell_starts, __global uint* order) {
     const uint bucket = (uint)get_global_id(0);
     if (bucket >= STOKES_HASH_BUCKETS) return;
-    const uint first_key = min(bucket << grid.bucket_shift, grid.keys);
-    const uint end_key = min((bucket + 1u) << grid.bucket_shift, grid.keys);
+    const uint first_key = min(bucket << hash_grid.bucket_shift, hash_grid.keys);
+    const uint end_key = min((bucket + 1u) << hash_grid.bucket_shift, hash_grid.keys);
     const uint begin = bucket_starts[bucket], end = bucket_starts[bucket + 1u];
     // Counts, then starts, then, each moved on by its photons, ends: a cell's end is the next one's start.
     __global uint* ends = cell_starts + 1;
@@ -98,20 +99,21 @@ __kernel void sort_buckets(__global const uint2* entries, __global const uint* b
 // Reads heads[slots], flux[slots] [W/nm], order[photons], cell_starts[keys] = photons.
 // Writes positions: x, y and z [3][stride] [mm], normals[photons] and sorted_flux[photons]
 // [W/nm].
-__kernel void permute_photons(__global const PhotonHead* heads, __global const float16* flux,
-                              __global const uint* order, __global const uint* cell_starts, HashGrid grid,
-                              __global float* positions, __global uint* normals, __global float16* sorted_flux) {
-    const uint photons = cell_starts[grid.keys];
+__kernel void permute_photons(HashGrid hash_grid, __global const PhotonHead* map_heads,
+                              __global const float16* map_flux, __global const uint* order,
+                              __global const uint* cell_starts, __global float* positions, __global uint* normals,
+                              __global float16* sorted_flux) {
+    const uint photons = cell_starts[hash_grid.keys];
     const uint first = (uint)get_global_id(0) * 16u;
     if (first >= photons) return;
     const uint count = min(photons - first, 16u);
     for (uint i = 0u; i < count; ++i) {
         const uint slot = order[first + i];
-        const PhotonHead head = heads[slot];
+        const PhotonHead head = map_heads[slot];
         positions[first + i] = head.x;
-        positions[grid.stride + first + i] = head.y;
-        positions[2u * grid.stride + first + i] = head.z;
+        positions[hash_grid.stride + first + i] = head.y;
+        positions[2u * hash_grid.stride + first + i] = head.z;
         normals[first + i] = head.normal;
-        sorted_flux[first + i] = flux[slot];
+        sorted_flux[first + i] = map_flux[slot];
     }
 }

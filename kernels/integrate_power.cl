@@ -5,20 +5,22 @@
 #include "lib/integrated_distance.clh"
 #include "lib/integrated_power.clh"
 #include "lib/material.clh"
+#include "shared/arguments.h"
 #include "shared/material.h"
 #include "shared/pass.h"
 
-// Work-items: round.count, one an entry of list.
-// Reads: list, points, rays (incident direction), materials, mixtures [media], mix_rows as mixtures refer to them.
-// Writes: exits and probes at round.first_exit + i, as sample_exits does: a point of the tangent plane, or without
+// Work-items: round.count, one an entry of its list.
+// Reads: event_lists, points, rays (incident direction), materials, mixtures [media], mix_rows as mixtures refer to
+// them. Writes: exits and probes at round.first_exit + i, as sample_exits does: a point of the tangent plane, or
+// without
 //   subsurface the entry itself.
-__kernel void draw_exits(EventRound round, __global const PassConstants* pass, __global const uint* list,
-                         __global const SurfacePoint* points, __global const Ray* rays,
-                         __global const MaterialRecord* materials, __global const DistanceMixture* mixtures,
-                         __global const float* mix_rows, __global ExitPoint* exits, __global Probe* probes) {
+__kernel void draw_exits(EventRound round, __global const PassConstants* pass, SURFACE_ARGUMENTS,
+                         __global const DistanceMixture* mixtures, __global const float* mix_rows,
+                         __global const uint* event_lists, __global const SurfacePoint* points,
+                         __global const Ray* rays, __global ExitPoint* exits, __global Probe* probes) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
-    const uint path = list[i];
+    const uint path = event_lists[round.first_entry + i];
     const SurfacePoint point = points[path];
     const float3 entry = (float3)(point.x, point.y, point.z), normal = (float3)(point.nx, point.ny, point.nz);
     __global const MaterialRecord* material = &materials[point.material];
@@ -40,9 +42,9 @@ __kernel void draw_exits(EventRound round, __global const PassConstants* pass, _
 // Work-items: round.count exits of round.component, from round.first_exit on.
 // Reads: exits (r_mm, row: refraction angle [deg]), materials, media [media].
 // Writes: power [exit]: T_F [mm], T_S [1] or T_M [1/mm^2] at the pass's wavelengths; nothing without subsurface.
-__kernel void integrate_power(EventRound round, __global const ExitPoint* exits,
-                              __global const MaterialRecord* materials, __global const PassMedium* media,
-                              __global float16* power) {
+__kernel void integrate_power(EventRound round, __global const MaterialRecord* materials,
+                              __global const PassMedium* media, __global const ExitPoint* exits,
+                              __global float16* exit_powers) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     __global const ExitPoint* exit_point = &exits[round.first_exit + i];
@@ -60,5 +62,5 @@ __kernel void integrate_power(EventRound round, __global const ExitPoint* exits,
         result = single_power16(sigma_s, sigma_t, r_mm, angle);
     else
         result = multiple_power16(sigma_a, sigma_t, media[medium].dipole_a, r_mm);
-    power[round.first_exit + i] = result;
+    exit_powers[round.first_exit + i] = result;
 }

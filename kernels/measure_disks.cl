@@ -5,6 +5,7 @@
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
 #include "lib/surface_normal.clh"
+#include "shared/arguments.h"
 #include "shared/gather.h"
 #include "shared/limits.h"
 #include "shared/pass.h"
@@ -58,13 +59,12 @@ FORCE_INLINE bool is_on_surface(BvhScene scene, __global const Triangle* triangl
 // together with that of the ray in its pixel; where it is not on the surface the mean of EVEN_SERIES such series is
 // added to 1, for 1/p = 1 + (1 - p)/p. Without, there is one series, which is the same. At most
 // STOKES_GATHER_MOST_TRIALS each.
-__kernel void measure_disks(uint count, float radius_mm, __global const PassConstants* pass,
-                            __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
-                            __global const Triangle* triangles, __global GatherPoint* points) {
+__kernel void measure_disks(uint count, float radius_mm, __global const PassConstants* pass, RAY_SCENE_ARGUMENTS,
+                            __global const Triangle* triangles, __global GatherPoint* gather_points) {
     const uint i = (uint)get_global_id(0);
-    if (i >= count || points[i].maps == 0u) return;
-    const GatherPoint point = points[i];
-    const BvhScene scene = {nodes, blocks, grid};
+    if (i >= count || gather_points[i].maps == 0u) return;
+    const GatherPoint point = gather_points[i];
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     Disk disk;
     disk.centre = (float3)(point.x, point.y, point.z);
     disk.normal = (float3)(point.nx, point.ny, point.nz);
@@ -82,5 +82,5 @@ __kernel void measure_disks(uint count, float radius_mm, __global const PassCons
             found = is_on_surface(scene, triangles, disk, (float2)(draw.a, draw.b));
         }
     }
-    points[i].weight = point.weight * (1.0f + (float)trials / (float)series);
+    gather_points[i].weight = point.weight * (1.0f + (float)trials / (float)series);
 }

@@ -6,6 +6,7 @@
 #include "lib/reradiation.clh"
 #include "lib/retrace.clh"
 #include "lib/surface.clh"
+#include "shared/arguments.h"
 #include "shared/material.h"
 #include "shared/photon.h"
 
@@ -15,13 +16,11 @@ FORCE_INLINE float2 missed_light(const ExitPoint* exit_point) {
 }
 
 // Model `paper`. Work-items: round.count exits of the fluorescence component.
-// Reads: exits, materials, spectra (excitation), map_flux: what deposit_exits stored.
+// Reads: exits, materials, spectra (excitation), exit_flux: what left there.
 // Writes: flux, rays, ledgers. An F photon is traced on with the flux that left (STEP 4), roulette below
 // ROULETTE_SHARE of the flux it was emitted with.
-__kernel void retrace_fluorescence(EventRound round, __global const PassConstants* pass,
-                                   __global const ExitPoint* exits, __global const MaterialRecord* materials,
-                                   __global const float16* spectra, __global const float16* map_flux,
-                                   __global Ray* rays, __global float16* flux, __global PathLedger* ledgers) {
+__kernel void retrace_fluorescence(EventRound round, PASS_ARGUMENTS, __global const MaterialRecord* materials,
+                                   __global const ExitPoint* exits, __global const float16* exit_flux, PATH_ARGUMENTS) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const ExitPoint exit_point = exits[round.first_exit + i];
@@ -45,11 +44,9 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
     add_light(&ledger->created, max(-in_medium, 0.0f));
     add_light(&ledger->stokes_loss, taken_up - converted);
 
-    const uint slot = round.first_slot + i;
-    const bool found = exit_point.found != 0u;
-    if (!found || slot >= round.slot_limit) {
+    if (exit_point.found == 0u) {
         add_light(&ledger->dropped, kept);
-        end_path(&rays[path], ledger, found ? STOKES_FATE_MAP_FULL : STOKES_FATE_MISSED_EXIT);
+        end_path(&rays[path], ledger, STOKES_FATE_MISSED_EXIT);
         return;
     }
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_RETRACE);
@@ -59,7 +56,7 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
         end_path(&rays[path], ledger, STOKES_FATE_ABSORBED);
         return;
     }
-    const float16 carried = map_flux[slot] / (survival * branch_share(material, &round));
+    const float16 carried = exit_flux[round.first_exit + i] / (survival * branch_share(material, &round));
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - going_on);
     ledger->conversions += 1u;
@@ -75,9 +72,9 @@ __kernel void retrace_fluorescence(EventRound round, __global const PassConstant
 // STEP 4: an S or M photon is traced on with probability flux kept / flux in, and the incident flux. At most one of
 // the two goes on: S with probability s = kept_S/in, M with m = kept_M/in; where s + m exceeds one, the
 // probabilities are divided and the flux multiplied by it, so that each has the same expectation.
-__kernel void retrace_elastic(EventRound round, __global const PassConstants* pass, __global const ExitPoint* exits,
-                              __global const MaterialRecord* materials, __global Ray* rays, __global float16* flux,
-                              __global PathLedger* ledgers) {
+__kernel void retrace_elastic(EventRound round, __global const PassConstants* pass,
+                              __global const MaterialRecord* materials, __global const ExitPoint* exits,
+                              PATH_ARGUMENTS) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const ExitPoint single = exits[round.first_exit + i];
@@ -153,15 +150,13 @@ FORCE_INLINE EventAccount account_of(uint event, const ExitGroups* groups, uint 
 }
 
 // Model `conserving`. Work-items: round.count events of one branch or, with round.branches, of both.
-// Reads: exits of all groups, materials, flux_f, flux_s, flux_m: what deposit_exits stored of them.
+// Reads: exits of all groups, materials, exit_flux: what left there.
 // Writes: flux, rays, ledgers.
 // STEP 4 of PHYSICS section 4: a photon is traced on with what was stored. At most one exit goes on, each with
 // probability kept/in, its flux divided by that; where these exceed one together, they are divided by their sum.
 __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const PassConstants* pass,
-                            __global const ExitPoint* exits, __global const MaterialRecord* materials,
-                            __global const float16* flux_f, __global const float16* flux_s,
-                            __global const float16* flux_m, __global Ray* rays, __global float16* flux,
-                            __global PathLedger* ledgers) {
+                            __global const MaterialRecord* materials, __global const ExitPoint* exits,
+                            __global const float16* exit_flux, PATH_ARGUMENTS) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint path = exits[groups.first_exit[0] + i * round.exits].path;
@@ -199,19 +194,11 @@ __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const 
         end_path(&rays[path], ledger, ended ? STOKES_FATE_ABSORBED : STOKES_FATE_MISSED_EXIT);
         return;
     }
-    const uint slot = groups.first_slot[group] + entry, component = groups.component[group];
-    if (slot >= groups.slot_limit[group]) {
-        add_light(&ledger->dropped, a.kept - a.missed);
-        end_path(&rays[path], ledger, STOKES_FATE_MAP_FULL);
-        return;
-    }
     const float raised = max(incident.x, a.kept.x) / chosen.kept.energy * exit_weight(material, draw.b);
-    const float16 carried = raised * (component == STOKES_MAP_FLUORESCENCE ? flux_f[slot]
-                                      : component == STOKES_MAP_SINGLE     ? flux_s[slot]
-                                                                           : flux_m[slot]);
+    const float16 carried = raised * exit_flux[groups.first_exit[group] + entry];
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, a.kept - a.missed - going_on);
-    if (component == STOKES_MAP_FLUORESCENCE) {
+    if (groups.component[group] == STOKES_MAP_FLUORESCENCE) {
         ledger->conversions += 1u;
         ledger->history = with_leader(ledger->history, ledger->leader);
     }

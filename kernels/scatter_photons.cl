@@ -2,22 +2,20 @@
 #include "lib/normal.clh"
 #include "lib/retrace.clh"
 #include "lib/texture.clh"
+#include "shared/arguments.h"
 #include "shared/photon.h"
 
-// Work-items: round.count, one an entry of list.
-// Reads: list, points and hits [paths], spectra: row i is the reflectance of material i, without its texture; textures.
-// Writes: the surface map's slot round.first_slot + i (incident flux [W/nm]; nothing
+// Work-items: round.count, one an entry of its list.
+// Reads: event_lists, points and hits [paths], spectra: row i is the reflectance of material i, without its texture;
+// textures. Writes: the surface map's slot round.first_slot + i (incident flux [W/nm]; nothing
 //   from round.slot_limit on), rays, flux, ledgers.
 // The path goes on with probability mean(reflectance flux) / mean(flux) and its flux raised accordingly.
-__kernel void scatter_diffuse(EventRound round, __global const PassConstants* pass, __global const uint* list,
-                              __global const SurfacePoint* points, __global const Hit* hits,
-                              __global const float16* spectra, __global const TextureRecord* texture_records,
-                              __global const float* texels, __global const TriangleUv* uv, __global Ray* rays,
-                              __global float16* flux, __global PathLedger* ledgers, __global PhotonHead* heads,
-                              __global float16* map_flux) {
+__kernel void scatter_diffuse(EventRound round, PASS_ARGUMENTS, TEXTURE_ARGUMENTS, __global const uint* event_lists,
+                              __global const SurfacePoint* points, __global const Hit* hits, PATH_ARGUMENTS,
+                              MAP_ARGUMENTS) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
-    const uint path = list[i];
+    const uint path = event_lists[round.first_entry + i];
     const SurfacePoint point = points[path];
     const float3 normal = (float3)(point.nx, point.ny, point.nz);
     const float16 incident = flux[path];
@@ -26,12 +24,12 @@ __kernel void scatter_diffuse(EventRound round, __global const PassConstants* pa
     const float2 arriving = light_of(incident, pass);
     const uint slot = round.first_slot + i;
     if (slot < round.slot_limit) {
-        heads[slot] = (PhotonHead){point.x, point.y, point.z, pack_normal(normal, point.body)};
+        map_heads[slot] = (PhotonHead){point.x, point.y, point.z, pack_normal(normal, point.body)};
         map_flux[slot] = incident;
         add_light(&ledger->stored, arriving);
     }
 
-    const Textures textures = {texture_records, texels, uv};
+    const Textures textures = {texture_records, texels, texture_uv};
     const float luminance = texture_luminance(textures, point.material, hits[path]);
     const float16 reflected = incident * textured_reflectance(texture_records, spectra, point.material, luminance);
     const float2 leaving = light_of(reflected, pass);

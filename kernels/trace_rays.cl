@@ -1,5 +1,6 @@
 // Rays and probes against the scene's bounding volume hierarchy (lib/bvh.clh).
 #include "lib/bvh.clh"
+#include "shared/arguments.h"
 #ifndef STOKES_BVH_SCALAR
 #include "lib/bvh_packet.clh"
 #endif
@@ -7,23 +8,21 @@
 
 // Work-items: n. Reads: list [n] indices of rays; rays, segments [mm]; t_max < t_min: not
 // traced. Writes: hits at the rays' indices: the nearest intersection, STOKES_NONE without one.
-__kernel void trace_closest(__global const uint* list, uint n, __global const BvhNode* nodes,
-                            __global const BvhBlock* blocks, BvhGrid grid, __global const Ray* rays,
+__kernel void trace_closest(uint n, RAY_SCENE_ARGUMENTS, __global const uint* list, __global const Ray* rays,
                             __global Hit* hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
-    const BvhScene scene = {nodes, blocks, grid};
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const BvhFilter all = {BVH_BOTH, 0u, 0};
     const uint j = list[i];
     hits[j] = bvh_closest(scene, rays[j], all);
 }
 
 // Work-items: n. Reads and writes as trace_closest, for rays [n] and hits [n] in place of a list.
-__kernel void trace_closest_all(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
-                                __global const Ray* rays, __global Hit* hits) {
+__kernel void trace_closest_all(uint n, RAY_SCENE_ARGUMENTS, __global const Ray* rays, __global Hit* hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
-    const BvhScene scene = {nodes, blocks, grid};
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const BvhFilter all = {BVH_BOTH, 0u, 0};
     hits[i] = bvh_closest(scene, rays[i], all);
 }
@@ -46,11 +45,10 @@ FORCE_INLINE Ray16 load_rays(__global const Ray* rays) {
 
 // Work-items: one per sixteen rays, the last one takes what is left. Reads and writes as trace_closest_all, the same
 // bits; rays that start and go side by side are traced together.
-__kernel void trace_packets(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
-                            __global const Ray* rays, __global Hit* hits) {
+__kernel void trace_packets(uint n, RAY_SCENE_ARGUMENTS, __global const Ray* rays, __global Hit* hits) {
     const uint first = (uint)get_global_id(0) * BVH_PACKET;
     if (first >= n) return;
-    const BvhScene scene = {nodes, blocks, grid};
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     if (first + BVH_PACKET <= n) {
         const Ray16 packet = load_rays(rays + first);
         Hit16 found;
@@ -79,20 +77,19 @@ __kernel void trace_packets(uint n, __global const BvhNode* nodes, __global cons
 
 // Work-items: n. Reads: rays [n], as trace_closest. Writes: occluded [n], 1 where anything lies on the
 // segment, else 0.
-__kernel void trace_any(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
-                        __global const Ray* rays, __global uint* occluded) {
+__kernel void trace_any(uint n, RAY_SCENE_ARGUMENTS, __global const Ray* rays, __global uint* occluded) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
-    const BvhScene scene = {nodes, blocks, grid};
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     occluded[i] = bvh_any(scene, rays[i]) ? 1u : 0u;
 }
 
 // Work-items: n. Reads: probes [n], triangles of the scene, for their body. Writes: hits [n], as probe_surface has
 // them.
-__kernel void trace_probe(uint n, __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
-                          __global const Triangle* triangles, __global const Probe* probes, __global Hit* hits) {
+__kernel void trace_probe(uint n, RAY_SCENE_ARGUMENTS, __global const Triangle* triangles, __global const Probe* probes,
+                          __global Hit* probe_hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
-    const BvhScene scene = {nodes, blocks, grid};
-    hits[i] = probe_surface(scene, triangles, probes[i]);
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
+    probe_hits[i] = probe_surface(scene, triangles, probes[i]);
 }

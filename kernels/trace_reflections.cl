@@ -5,6 +5,7 @@
 #include "lib/rng.clh"
 #include "lib/surface.clh"
 #include "lib/tiles.clh"
+#include "shared/arguments.h"
 #include "shared/camera.h"
 #include "shared/material.h"
 #include "shared/pass.h"
@@ -22,15 +23,13 @@
 // segment is left, which starts offset_mm above the surface.
 // Reads and writes hits[width * height]: the nearest intersection along those, STOKES_NONE without one and after
 // MOST_REFLECTIONS.
-__kernel void trace_reflections(CameraRecord camera, __global const PassConstants* pass, __global const BvhNode* nodes,
-                                __global const BvhBlock* blocks, BvhGrid grid, __global const Triangle* triangles,
-                                __global const ShapeRecord* shapes, __global const MaterialRecord* materials,
-                                __global Ray* rays, __global Hit* hits) {
+__kernel void trace_reflections(CameraRecord camera, __global const PassConstants* pass, RAY_SCENE_ARGUMENTS,
+                                SURFACE_ARGUMENTS, __global Ray* rays, __global Hit* hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= camera.width * camera.height) return;
     const uint2 at = pixel_of_ray(i, camera.width, camera.height);
     const uint pixel = at.y * camera.width + at.x;
-    const BvhScene scene = {nodes, blocks, grid};
+    const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const BvhFilter all = {BVH_BOTH, 0u, 0};
     Ray ray = rays[i];
     Hit hit = hits[i];

@@ -5,6 +5,7 @@
 #include "lib/retrace.clh"
 #include "lib/surface.clh"
 #include "lib/walk.clh"
+#include "shared/arguments.h"
 #include "shared/photon.h"
 
 // Fills one map's slot: with the photon, or where it is in another map or nowhere, with none.
@@ -16,8 +17,8 @@ FORCE_INLINE void fill_slot(__global PhotonHead* heads, __global float16* map_fl
     map_flux[slot] = here ? leaving : (float16)(0.0f);
 }
 
-// Work-items: round.count, one an entry of list: photons that go below a surface.
-// Reads: list, points (entry; its material is that of the whole body), rays (incident direction), bodies
+// Work-items: round.count, one an entry of its list: photons that go below a surface.
+// Reads: event_lists, points (entry; its material is that of the whole body), rays (incident direction), bodies
 //   [STOKES_BODY_*], the scene, materials, spectra (excitation, re-radiation, sigma_t, albedo).
 // Writes: slot slots.first[m] + i of each map m: the flux that leaves [W/nm], in one of them at most: F if it was
 //   re-emitted; else S if it scattered once and went straight out, or did not scatter at all (light through a thin
@@ -27,18 +28,15 @@ FORCE_INLINE void fill_slot(__global PhotonHead* heads, __global float16* map_fl
 // law as `conserving` has, so that the two differ by what happens below the surface alone.
 // Ledger: absorbed and stokes_loss are what collisions take, roulette is what the weights and the roulette add and
 // take.
-__kernel void walk_photons(EventRound round, WalkSlots slots, __global const PassConstants* pass,
-                           __global const uint* list, __global const SurfacePoint* points, __global const uint* bodies,
-                           __global const BvhNode* nodes, __global const BvhBlock* blocks, BvhGrid grid,
-                           __global const Triangle* triangles, __global const MaterialRecord* materials,
-                           __global const float16* spectra, __global Ray* rays, __global float16* flux,
-                           __global PathLedger* ledgers, __global PhotonHead* fluorescence_heads,
+__kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, SURFACE_ARGUMENTS,
+                           __global const uint* bodies, __global const uint* event_lists,
+                           __global const SurfacePoint* points, PATH_ARGUMENTS, __global PhotonHead* fluorescence_heads,
                            __global float16* fluorescence_flux, __global PhotonHead* single_heads,
                            __global float16* single_flux, __global PhotonHead* multiple_heads,
                            __global float16* multiple_flux) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
-    const uint path = list[i];
+    const uint path = event_lists[round.first_entry + i];
     const SurfacePoint point = points[path];
     __global const MaterialRecord* material = &materials[point.material];
     __global PathLedger* ledger = &ledgers[path];
@@ -55,7 +53,7 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
                  (float3)(0.0f),
                  material,
                  spectra,
-                 {nodes, blocks, grid},
+                 {bvh_nodes, bvh_blocks, bvh_grid},
                  triangles,
                  pass};
     tangent_frame(body.normal, &body.tangent_s, &body.tangent_t);
@@ -97,7 +95,6 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
         end_path(&rays[path], ledger, fate);
         return;
     }
-    if (out && slots.first[component] + i >= slots.limit[component]) fate = STOKES_FATE_MAP_FULL;
     add_light(&ledger->absorbed, walker.absorbed);
     add_light(&ledger->stokes_loss, walker.stokes_loss);
     add_light(&ledger->roulette, incident - walker.absorbed - walker.stokes_loss - kept);
@@ -107,7 +104,7 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, __global const Pas
         end_path(&rays[path], ledger, fate);
         return;
     }
-    add_light(&ledger->stored, kept);
+    if (slots.first[component] + i < slots.limit[component]) add_light(&ledger->stored, kept);
     const float survival = min(kept.x / (16.0f * ROULETTE_SHARE * ledger->reference_flux), 1.0f);
     if (!(draw.a < survival)) {
         add_light(&ledger->roulette, kept);

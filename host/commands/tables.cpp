@@ -9,7 +9,7 @@
 #include "host/commands/commands.hpp"
 #include "host/commands/progress.hpp"
 #include "host/core/error.hpp"
-#include "host/render/green_walk.hpp"
+#include "host/render/transport/green_walk.hpp"
 #include "host/scene/scene_reader.hpp"
 #include "host/subsurface/power_table_json.hpp"
 

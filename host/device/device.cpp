@@ -141,7 +141,7 @@ void Device::finish() const {
     collect();
 }
 
-void Device::record(const std::string& kernel_name, const cl::Event& event) {
+void Device::record(const std::string& kernel_name, const cl::Event& event) const {
     shared_->pending.emplace_back(kernel_name, event);
 }
 

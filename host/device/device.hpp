@@ -1,4 +1,4 @@
-// Everything that says cl::. A device with its queue, typed buffers, programs and kernel launches.
+// A device with its queue, and typed buffers. host/device is the only room that says cl::.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -76,7 +76,7 @@ class Device {
     void set_local_size(std::size_t size) { shared_->local_size = size; }
     std::size_t local_size() const { return shared_->local_size; }
 
-    // How its ray kernels are built (host/device/ray_shape.hpp); none: as the device's description suggests.
+    // How its ray kernels are built; without it, as choose_ray_shape() has it.
     void set_ray_shape(RayShape shape) { shared_->ray_shape = shape; }
     RayShape ray_shape() const { return shared_->ray_shape.value_or(choose_ray_shape(description())); }
 
@@ -84,7 +84,7 @@ class Device {
     // was.
     const std::map<std::string, StageTime>& stage_times() const;
     void reset_stage_times();
-    void record(const std::string& kernel_name, const cl::Event& event);
+    void record(const std::string& kernel_name, const cl::Event& event) const;
 
     // Asked before every build and launch until it is set again or emptied; once it says true they throw
     // Interrupted.
@@ -128,6 +128,7 @@ class Allocation {
   public:
     Allocation() = default;
     Allocation(const Device& device, const std::string& name, std::size_t bytes);
+    bool allocated() const { return owner_ != nullptr; }
     const cl::Buffer& buffer() const { return owner_->buffer; }
     const Device& device() const { return owner_->device; }
     void write(const void* data, std::size_t bytes, std::size_t offset) const;
@@ -161,6 +162,7 @@ class Buffer {
     }
 
     std::size_t size() const { return size_; }
+    bool allocated() const { return allocation_.allocated(); }
     const cl::Buffer& cl_buffer() const { return allocation_.buffer(); }
 
     void upload(const T* data, std::size_t count, std::size_t offset = 0) const {
@@ -189,63 +191,5 @@ class Buffer {
     Allocation allocation_;
     std::size_t size_ = 0;
 };
-
-class Kernel {
-  public:
-    Kernel() = default;
-    Kernel(Device device, cl::Kernel kernel, std::string name);
-
-    // Runs work_items work-items with args in the kernel's order (buffers, or scalars and structs by value).
-    // The global size is rounded up to the local size: kernels guard with their own count. Asynchronous.
-    template <class... Args>
-    void launch(std::size_t work_items, const Args&... args) {
-        if (work_items == 0) return;
-        cl_uint index = 0;
-        (set(index++, args), ...);
-        enqueue(work_items);
-    }
-    const std::string& name() const { return name_; }
-
-  private:
-    template <class T>
-    void set(cl_uint index, const Buffer<T>& buffer) {
-        set_bytes(index, sizeof(cl_mem), &buffer.cl_buffer()());
-    }
-    template <class T>
-    void set(cl_uint index, const T& value) {
-        static_assert(std::is_trivially_copyable<T>::value, "kernel arguments are plain data");
-        static_assert(!std::is_same<T, bool>::value && !std::is_same<T, double>::value && sizeof(T) % 4 == 0,
-                      "kernel arguments are 32-bit words");
-        set_bytes(index, sizeof(T), &value);
-    }
-    void set_bytes(cl_uint index, std::size_t bytes, const void* data);
-    void enqueue(std::size_t work_items);
-
-    Device device_;
-    cl::Kernel kernel_;
-    std::string name_;
-};
-
-class Program {
-  public:
-    // file: below kernels/, for example "trace_rays.cl". options: extra compiler options such as "-DWIDTH=8".
-    // RunError with the compiler's log when it does not build.
-    Program(const Device& device, const std::string& file, const std::vector<std::string>& options = {});
-    static Program from_source(const Device& device, const std::string& name, const std::string& text,
-                               const std::vector<std::string>& options = {});
-    Kernel kernel(const std::string& name) const;
-
-  private:
-    explicit Program(const Device& device) : device_(device) {}
-    void build(const std::string& name, const std::string& text, const std::vector<std::string>& options);
-    Device device_;
-    cl::Program program_;
-    std::string file_;
-};
-
-// Text of a kernel file with its #include "..." lines replaced by the files' text (each once), #line kept.
-// directory: where kernels are read from, empty for the embedded ones. RunError for a file that is not there.
-std::string expand_kernel_source(const std::string& name, const std::string& text, const std::string& directory);
-std::string read_kernel_file(const std::string& file, const std::string& directory);
 
 }  // namespace stokes

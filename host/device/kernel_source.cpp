@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "host/core/embedded.hpp"
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 
 namespace stokes {
 

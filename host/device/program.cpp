@@ -1,4 +1,4 @@
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/device/signals.hpp"
 
 namespace stokes {
@@ -20,10 +20,10 @@ void Program::build(const std::string& name, const std::string& text, const std:
     device_.check_stop();
     std::string flags = "-cl-std=CL1.2";
     for (const std::string& option : options) flags += " " + option;
-    const std::string source = expand_kernel_source(name, text, device_.kernel_directory());
+    source_ = expand_kernel_source(name, text, device_.kernel_directory());
     const SignalsHeldBack held_back;
     try {
-        program_ = cl::Program(device_.context(), source);
+        program_ = cl::Program(device_.context(), source_);
         program_.build(flags.c_str());
     } catch (const cl::BuildError& error) {
         std::string log;
@@ -37,24 +37,48 @@ void Program::build(const std::string& name, const std::string& text, const std:
 
 Kernel Program::kernel(const std::string& name) const {
     try {
-        return Kernel(device_, cl::Kernel(program_, name.c_str()), name);
+        return Kernel(device_, cl::Kernel(program_, name.c_str()), name, kernel_arguments(source_, name));
     } catch (const cl::Error& error) {
         throw RunError("kernels/" + file_ + " has no kernel " + name + " (OpenCL error " + std::to_string(error.err()) +
                        ")");
     }
 }
 
-Kernel::Kernel(Device device, cl::Kernel kernel, std::string name)
-    : device_(std::move(device)), kernel_(std::move(kernel)), name_(std::move(name)) {}
+Kernel::Kernel(Device device, cl::Kernel kernel, std::string name, std::vector<KernelArgument> arguments)
+    : device_(std::move(device)),
+      kernel_(std::move(kernel)),
+      name_(std::move(name)),
+      arguments_(std::move(arguments)) {}
 
-void Kernel::set_bytes(cl_uint index, std::size_t bytes, const void* data) {
-    const cl_int error = ::clSetKernelArg(kernel_(), index, bytes, data);
-    if (error != CL_SUCCESS)
-        throw RunError("kernel " + name_ + ": argument " + std::to_string(index) + " refused, OpenCL error " +
-                       std::to_string(error));
+void Kernel::bind(std::size_t index, const Arguments* const* groups, std::size_t count) const {
+    const KernelArgument& wanted = arguments_[index];
+    const auto fail = [&](const std::string& what) {
+        throw RunError("kernel " + name_ + ": its argument " + wanted.name + " (" + wanted.type +
+                       (wanted.pointer ? "*" : "") + ") " + what);
+    };
+    const Arguments::Value* found = nullptr;
+    for (std::size_t g = 0; g < count; ++g)
+        for (const Arguments::Value& value : groups[g]->values()) {
+            if (value.hash != wanted.hash || value.name != wanted.name) continue;
+            if (found != nullptr) fail("is bound twice");
+            found = &value;
+        }
+    if (found == nullptr) fail("is bound by no group");
+    if (found->pointer != wanted.pointer || found->type != wanted.type)
+        fail("got " + std::string(found->type) + (found->pointer ? "*" : ""));
+    if (found->pointer && found->empty()) fail("has no buffer yet");
+    const cl_int error = ::clSetKernelArg(kernel_(), static_cast<cl_uint>(index), found->size,
+                                          static_cast<const void*>(found->bytes.data()));
+    if (error != CL_SUCCESS) fail("was refused, OpenCL error " + std::to_string(error));
 }
 
-void Kernel::enqueue(std::size_t work_items) {
+void Kernel::run(std::size_t work_items, const Arguments* const* groups, std::size_t count) const {
+    if (work_items == 0) return;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) bind(i, groups, count);
+    enqueue(work_items);
+}
+
+void Kernel::enqueue(std::size_t work_items) const {
     const std::size_t local = device_.local_size();
     const std::size_t global = (work_items + local - 1) / local * local;
     device_.check_stop();

@@ -58,9 +58,9 @@ CameraRecord make_whole_record(const Camera& camera, int width, int height) {
 CameraView::CameraView(const Device& device, const CameraRecord& camera)
     : camera_(camera), camera_rays_(Program(device, "camera_rays.cl").kernel("camera_rays")) {}
 
-void CameraView::make_rays(const CameraRecord& camera, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays) {
+void CameraView::make_rays(const CameraRecord& camera, const Arguments& pass, const Buffer<Ray>& rays) {
     if (rays.size() < ray_count()) throw RunError("camera: fewer rays than pixels");
-    camera_rays_.launch(ray_count(), camera, pass, rays);
+    camera_rays_.launch(ray_count(), pass, Arguments("camera", camera).add("rays", rays));
 }
 
 }  // namespace stokes

@@ -1,7 +1,7 @@
 // The camera: where its rays go.
 #pragma once
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/camera.h"
 #include "kernels/shared/pass.h"
@@ -27,9 +27,9 @@ class CameraView {
     std::uint32_t ray_count() const { return camera_.width * camera_.height; }
 
     // Writes rays[ray_count()] for the pass. Asynchronous.
-    void make_rays(const Buffer<PassConstants>& pass, const Buffer<Ray>& rays) { make_rays(camera_, pass, rays); }
+    void make_rays(const Arguments& pass, const Buffer<Ray>& rays) { make_rays(camera_, pass, rays); }
     // The same through another camera of as many pixels.
-    void make_rays(const CameraRecord& camera, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays);
+    void make_rays(const CameraRecord& camera, const Arguments& pass, const Buffer<Ray>& rays);
 
   private:
     CameraRecord camera_;

@@ -46,7 +46,10 @@ std::vector<MaterialRecord> material_records(const Scene& scene, Transport trans
             record.fluorescent_fraction = static_cast<float>(fluorescent_fraction(material.dyes));
             record.excitation_row = layout.excitation_row[m];
             record.reradiation_row = record.excitation_row + 1;
-            if (!material.medium) return;
+            if (!material.medium) {  // which walks have no part in
+                if (transport == Transport::walk) record.transport = STOKES_TRANSPORT_CONSERVING;
+                return;
+            }
             record.sigma_row = layout.sigma_row(*material.medium);
             set_medium(record, scene.media[static_cast<std::size_t>(*material.medium)],
                        static_cast<std::uint32_t>(*material.medium), reflects(scene.materials[m], transport));

@@ -21,12 +21,10 @@ EmissionTrial::EmissionTrial(const Device& device, std::uint32_t photons)
       cells_(device, "emission cells of trial paths", photons),
       places_(device, "emission places of trial paths", photons) {}
 
-void EmissionTrial::add(const EmissionCells& cells, const DeviceScene& scene, const PassBuffers& pass,
-                        const PhotonMaps& maps, const CameraRecord& camera, const Buffer<GatherPoint>& points,
-                        const DeviceTextures& textures) {
-    find_places_.launch(photons_, pass.constants, pass.cell_count, pass.cells, pass.first_photons, scene.lights, cells_,
-                        places_);
-    const std::vector<double> scores = path_scores(pass, maps, camera, points, textures);
+void EmissionTrial::add(const EmissionCells& cells, const Arguments& common, const PhotonMaps& maps,
+                        const CameraRecord& camera, const Buffer<GatherPoint>& points) {
+    find_places_.launch(photons_, common, Arguments("cell_of_path", cells_).add("places", places_, "float4"));
+    const std::vector<double> scores = path_scores(common, maps, camera, points);
     const std::vector<std::uint32_t> cell = cells_.download();
     const std::vector<Place> places = places_.download();
     std::vector<double> count(cells.records().size(), 0.0);
@@ -44,16 +42,19 @@ void EmissionTrial::add(const EmissionCells& cells, const DeviceScene& scene, co
 }
 
 // Of all that each path stored.
-std::vector<double> EmissionTrial::path_scores(const PassBuffers& pass, const PhotonMaps& maps,
-                                               const CameraRecord& camera, const Buffer<GatherPoint>& points,
-                                               const DeviceTextures& textures) {
+std::vector<double> EmissionTrial::path_scores(const Arguments& common, const PhotonMaps& maps,
+                                               const CameraRecord& camera, const Buffer<GatherPoint>& points) {
     std::vector<double> scores(photons_, 0.0);
     for (std::uint32_t m = 0; m < maps.size(); ++m) {
         const std::uint32_t slots = maps[m].used();
         if (slots == 0) continue;
         if (scores_.size() < slots) scores_ = Buffer<float>(device_, "scores of trial photons", slots);
-        score_photons_.launch(slots, slots, m, camera, pass.constants, maps[m].heads(), maps[m].flux(), points,
-                              pass.rows, textures.records, scores_);
+        score_photons_.launch(slots, common, maps[m].arguments(),
+                              Arguments("slots", slots)
+                                  .add("map", m)
+                                  .add("camera", camera)
+                                  .add("gather_points", points)
+                                  .add("scores", scores_));
         const std::vector<float> of_slot = scores_.download(slots);
         const std::vector<std::uint32_t> path = maps[m].paths().download(slots);
         for (std::uint32_t slot = 0; slot < slots; ++slot)

@@ -1,11 +1,11 @@
 // Trial passes that find out where the light comes from that the camera sees, and aim the photons there.
 #pragma once
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/render/device_scene.hpp"
 #include "host/render/emission_cells.hpp"
 #include "host/render/gather.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "host/scene/scene.hpp"
 
 namespace stokes {
@@ -17,16 +17,17 @@ class EmissionTrial {
     EmissionTrial(const Device& device, std::uint32_t photons);
 
     // Takes in a pass of that many photons that the tracer has traced from these cells, into maps that tracked their
-    // paths; points: what the camera sees in it, in the order of its rays.
-    void add(const EmissionCells& cells, const DeviceScene& scene, const PassBuffers& pass, const PhotonMaps& maps,
-             const CameraRecord& camera, const Buffer<GatherPoint>& points, const DeviceTextures& textures);
+    // paths; common: arguments of the scene and the pass; points: what the camera finds in it, in the order of its
+    // rays.
+    void add(const EmissionCells& cells, const Arguments& common, const PhotonMaps& maps, const CameraRecord& camera,
+             const Buffer<GatherPoint>& points);
 
     // Of all passes so far.
     std::vector<EmissionSample> samples() const;
 
   private:
-    std::vector<double> path_scores(const PassBuffers& pass, const PhotonMaps& maps, const CameraRecord& camera,
-                                    const Buffer<GatherPoint>& points, const DeviceTextures& textures);
+    std::vector<double> path_scores(const Arguments& common, const PhotonMaps& maps, const CameraRecord& camera,
+                                    const Buffer<GatherPoint>& points);
 
     Device device_;
     std::uint32_t photons_, passes_ = 0;

@@ -6,6 +6,7 @@ namespace stokes {
 
 Gather::Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera)
     : device_(device),
+      kernels_(kernels),
       camera_(camera),
       points_(device, "points seen by the camera", std::size_t{camera.width} * camera.height) {
     const Program program(device, "gather_radiance.cl");
@@ -17,27 +18,27 @@ Gather::Gather(const Device& device, const RayKernels& kernels, const CameraReco
     choose_radii_ = counting.kernel("choose_radii");
 }
 
-void Gather::collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
-                            const Buffer<Hit>& hits, const Buffer<FilmValue>& film) {
-    collect_points_.launch(pixels(), camera_, pass, rays, hits, scene.triangles, scene.shapes, scene.materials,
-                           scene.lights, scene.emitted, scene.textures.records, scene.textures.texels,
-                           scene.textures.uv, points_, film);
+Arguments Gather::own(const Buffer<FilmValue>& film) const {
+    return Arguments("count", pixels()).add("gather_points", points_).add("film", film, "float4");
 }
 
-void Gather::add_direct_light(const DeviceScene& on_device, const GatherScene& scene, const Buffer<PassConstants>& pass,
-                              const Buffer<FilmValue>& film) {
-    const RayScene& rays = on_device.rays;
+void Gather::collect_points(const Arguments& common, const Buffer<Ray>& rays, const Buffer<Hit>& hits,
+                            const Buffer<FilmValue>& film) {
+    collect_points_.launch(pixels(), common, own(film),
+                           Arguments("camera", camera_).add("rays", rays).add("hits", hits));
+}
+
+void Gather::add_direct_light(const Arguments& common, const Buffer<FilmValue>& film) {
     if (!add_direct_light_)
-        add_direct_light_.emplace(rays.kernels.program(device_, "direct_light.cl").kernel("add_direct_light"));
-    add_direct_light_->launch(pixels(), points_, pixels(), pass, rays.nodes, rays.blocks, rays.grid, scene.triangles,
-                              scene.shapes, on_device.light_count, on_device.lights, on_device.light_areas,
-                              scene.emitted, scene.spectra, scene.textures.records, film);
+        add_direct_light_.emplace(kernels_.program(device_, "direct_light.cl").kernel("add_direct_light"));
+    add_direct_light_->launch(pixels(), common, own(film));
 }
 
 void Gather::count_photons(std::uint32_t map, std::uint32_t level, const SpatialHash& photons,
                            const Buffer<float>& counts) {
-    count_photons_.launch(pixels(), points_, pixels(), map, level, enough_photons, photons.grid(),
-                          photons.cell_starts(), photons.positions(), photons.normals(), photons.flux(), counts);
+    count_photons_.launch(
+        pixels(), own({}), photons.arguments(),
+        Arguments("map", map).add("level", level).add("enough", enough_photons).add("counts", counts));
 }
 
 void Gather::set_radii(const std::vector<PixelRadius>& pixels) {
@@ -46,19 +47,17 @@ void Gather::set_radii(const std::vector<PixelRadius>& pixels) {
 }
 
 void Gather::choose_radii() {
-    if (radii_.size() > 0) choose_radii_.launch(pixels(), radii_, pixels(), points_);
+    if (radii_.size() > 0) choose_radii_.launch(pixels(), own({}), Arguments("pixel_radii", radii_));
 }
 
-void Gather::measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm) {
-    measure_disks_.launch(pixels(), pixels(), radius_mm, pass, scene.rays.nodes, scene.rays.blocks, scene.rays.grid,
-                          scene.triangles, points_);
+void Gather::measure_disks(const Arguments& common, float radius_mm) {
+    measure_disks_.launch(pixels(), common, own({}), Arguments("radius_mm", radius_mm));
 }
 
-void Gather::add_map(std::uint32_t map, float radius_class, const SpatialHash& photons, const GatherScene& scene,
-                     const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film) {
-    gather_radiance_.launch(pixels(), points_, pixels(), map, radius_class, photons.grid(), photons.cell_starts(),
-                            photons.positions(), photons.normals(), photons.flux(), scene.spectra,
-                            scene.textures.records, pass, film);
+void Gather::add_map(const Arguments& common, std::uint32_t map, float radius_class, const SpatialHash& photons,
+                     const Buffer<FilmValue>& film) {
+    gather_radiance_.launch(pixels(), common, own(film), photons.arguments(),
+                            Arguments("map", map).add("largest_factor", radius_class));
 }
 
 }  // namespace stokes

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/render/device_scene.hpp"
 #include "host/render/spatial_hash.hpp"
 #include "kernels/shared/camera.h"
@@ -21,19 +21,7 @@ struct alignas(16) FilmValue {
     float x, y, z, unused;
 };
 
-// What the gather reads of the scene and of the pass.
-struct GatherScene {
-    Buffer<Triangle> triangles;
-    Buffer<ShapeRecord> shapes;
-    Buffer<MaterialRecord> materials;
-    Buffer<LightRecord> lights;
-    Buffer<Flux16> spectra;  // row i: reflectance of material i at the pass's wavelengths
-    Buffer<Flux16>
-        emitted;  // row i: radiance of light i from its front [W mm^-2 sr^-1 nm^-1]; beams: PassBuffers::radiance
-    DeviceTextures textures;
-};
-
-// Adds a pass to the film [STOKES_MAP_COUNT][height][width].
+// Adds a pass to the film [STOKES_MAP_COUNT][height][width]. common: arguments of the scene and of the pass.
 class Gather {
   public:
     Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera);
@@ -41,13 +29,12 @@ class Gather {
     // Finds the points that the camera rays see, and adds the light of emitters among them to the surface layer.
     // rays, hits: one per pixel, as CameraView makes and trace_closest_all or trace_reflections find them.
     // Asynchronous.
-    void collect_points(const GatherScene& scene, const Buffer<PassConstants>& pass, const Buffer<Ray>& rays,
-                        const Buffer<Hit>& hits, const Buffer<FilmValue>& film);
+    void collect_points(const Arguments& common, const Buffer<Ray>& rays, const Buffer<Hit>& hits,
+                        const Buffer<FilmValue>& film);
 
     // Adds the light that falls straight from the lights onto those points that are diffuse to the surface layer: what
     // photons stored before their first event would bring. Asynchronous.
-    void add_direct_light(const DeviceScene& on_device, const GatherScene& scene, const Buffer<PassConstants>& pass,
-                          const Buffer<FilmValue>& film);
+    void add_direct_light(const Arguments& common, const Buffer<FilmValue>& film);
 
     // Raises counts [count_levels][points], 0 to begin with, to the photons of a map that count towards each point
     // within the radius of its hash: kernels/count_photons.cl. Levels in ascending order. Asynchronous.
@@ -65,19 +52,21 @@ class Gather {
 
     // Weighs the points by how much of their disk lies on the surface, once a pass; radius_mm is that of the pass.
     // Without it each weighs one, or the exit_scale of its material. Asynchronous.
-    void measure_disks(const DeviceScene& scene, const Buffer<PassConstants>& pass, float radius_mm);
+    void measure_disks(const Arguments& common, float radius_mm);
 
     // Adds the light of one map (STOKES_MAP_*) at the points of one radius class to the film's layer of the same
     // number. photons: hashed for that many times the radius of the pass. Asynchronous.
-    void add_map(std::uint32_t map, float radius_class, const SpatialHash& photons, const GatherScene& scene,
-                 const Buffer<PassConstants>& pass, const Buffer<FilmValue>& film);
+    void add_map(const Arguments& common, std::uint32_t map, float radius_class, const SpatialHash& photons,
+                 const Buffer<FilmValue>& film);
 
     // What collect_points found, one a pixel, in the order of the rays.
     const Buffer<GatherPoint>& points() const { return points_; }
 
   private:
     std::uint32_t pixels() const { return camera_.width * camera_.height; }
+    Arguments own(const Buffer<FilmValue>& film) const;
     Device device_;
+    RayKernels kernels_;
     CameraRecord camera_;
     Kernel collect_points_, count_photons_, choose_radii_, measure_disks_, gather_radiance_;
     std::optional<Kernel> add_direct_light_;  // compiled when it is first needed

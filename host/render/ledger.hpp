@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_paths.hpp"
 
 namespace stokes {
 

@@ -58,8 +58,16 @@ void PhotonMap::track_paths(bool on) {
     note_paths_.emplace(Program(device_, "score_photons.cl").kernel("note_paths"));
 }
 
-void PhotonMap::note_paths(const Buffer<std::uint32_t>& list, std::uint32_t count, std::uint32_t exits) {
-    if (note_paths_) note_paths_->launch(count, count, exits, used_, capacity_, list, paths_);
+void PhotonMap::note_paths(const Arguments& paths, std::uint32_t first_entry, std::uint32_t count,
+                           std::uint32_t exits_each) {
+    if (!note_paths_) return;
+    note_paths_->launch(count, paths,
+                        Arguments("count", count)
+                            .add("exits_each", exits_each)
+                            .add("first_entry", first_entry)
+                            .add("first_slot", used_)
+                            .add("slot_limit", capacity_)
+                            .add("path_of_slot", paths_));
 }
 
 std::uint32_t PhotonMap::advance(std::uint32_t count) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/render/spatial_hash.hpp"
 #include "kernels/shared/photon.h"
 
@@ -28,9 +28,9 @@ class PhotonMap {
 
     // From now on, or no longer, remembers which path each slot belongs to.
     void track_paths(bool on);
-    // The count events of this list of paths will store at the next slots, exits each. Nothing where paths are not
-    // tracked. Asynchronous.
-    void note_paths(const Buffer<std::uint32_t>& list, std::uint32_t count, std::uint32_t exits);
+    // The count events whose paths stand from first_entry on in event_lists, which paths has, will store at the next
+    // slots, exits_each each. Nothing where paths are not tracked. Asynchronous.
+    void note_paths(const Arguments& paths, std::uint32_t first_entry, std::uint32_t count, std::uint32_t exits_each);
     const Buffer<std::uint32_t>& paths() const { return paths_; }  // by slot
 
     // Hands out count slots; returns how many of them lie beyond the capacity and are lost.
@@ -40,6 +40,8 @@ class PhotonMap {
     std::uint32_t capacity() const { return capacity_; }
     const Buffer<PhotonHead>& heads() const { return heads_; }
     const Buffer<Flux16>& flux() const { return flux_; }
+    // MAP_ARGUMENTS.
+    Arguments arguments() const { return Arguments("map_heads", heads_).add("map_flux", flux_); }
 
   private:
     Device device_;

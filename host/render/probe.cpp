@@ -7,8 +7,7 @@
 
 #include "host/core/error.hpp"
 #include "host/render/device_scene.hpp"
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "host/render/probe_scene.hpp"
 #include "host/render/probe_sets.hpp"
 #include "host/subsurface/escape.hpp"
@@ -85,10 +84,7 @@ struct HalfSpaceProbe::Bench {
           on_device(on, scene),
           batches(std::max(least_batches, (s.photons + most_photons_per_batch - 1) / most_photons_per_batch)),
           photons(static_cast<std::uint32_t>((s.photons + batches - 1) / batches)),
-          pass(on, scene, on_device),
-          tracer(on, on_device.rays.kernels, photons),
-          maps{PhotonMap(on, "fluorescence", photons), PhotonMap(on, "single scattering", photons),
-               PhotonMap(on, "multiple scattering", photons), PhotonMap(on, "surface", 1)} {
+          pass(on, scene, on_device, photons, photons) {
         on_device.bodies.upload({STOKES_BODY_FLAT});
         // Far below the mean free paths, so that it matters nowhere.
         on_device.offset_mm = static_cast<float>(1e-3 * mean_free_paths(material).shortest_mm);
@@ -107,9 +103,7 @@ struct HalfSpaceProbe::Bench {
     DeviceScene on_device;
     std::int64_t batches;
     std::uint32_t photons;  // a batch and set
-    PassMaker pass;
-    PhotonTracer tracer;
-    PhotonMaps maps;
+    PhotonPass pass;
     std::vector<int> grid_nm;
 };
 
@@ -179,8 +173,8 @@ void HalfSpaceProbe::Bench::add_set(const ProbeSet& set, const ProbeResult& resu
         result.lambda_nm.begin());
     for (std::size_t m = 0; m < component_of.size(); ++m) {
         const std::size_t component = component_of[m];
-        const std::vector<PhotonHead> heads = maps[m].heads().download(maps[m].used());
-        const std::vector<Flux16> flux = maps[m].flux().download(maps[m].used());
+        const std::vector<PhotonHead> heads = pass.maps()[m].heads().download(pass.maps()[m].used());
+        const std::vector<Flux16> flux = pass.maps()[m].flux().download(pass.maps()[m].used());
         for (std::size_t i = 0; i < heads.size(); ++i) {
             if (heads[i].normal == STOKES_EMPTY_SLOT) continue;
             double leaving = 0.0;
@@ -276,9 +270,8 @@ ProbeResult HalfSpaceProbe::measure(int lambda_ex_nm) {
         double reflections = 0.0;
         const auto sets = probe_sets(grid, b.settings.seed, static_cast<std::uint32_t>(batch));
         for (const ProbeSet& set : sets) {
-            b.pass.make(set.wavelengths, index++, b.photons);
-            for (PhotonMap& map : b.maps) map.clear();
-            const PhotonAccount account = b.tracer.trace(b.on_device, b.pass.buffers(), b.photons, b.maps);
+            b.pass.prepare(set.wavelengths, index++, b.photons);
+            const PhotonAccount account = b.pass.trace();
             reflections += static_cast<double>(account.reflections);
             arrived += account.energy[0];
             dropped += account.energy[4];

@@ -1,6 +1,6 @@
 // A virtual spectrofluorometer: a narrow monochromatic beam falls on a half-space of a material, and what
 // leaves is read by wavelength and by distance from where the beam enters. The light is the render's own:
-// DeviceScene, PassMaker and PhotonTracer, whose maps are read in place of being looked at.
+// DeviceScene and PhotonPass, whose maps are read in place of being looked at.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/scene/bvh_builder.hpp"
 #include "kernels/shared/bvh.h"
 #include "kernels/shared/ray.h"
@@ -35,6 +35,11 @@ struct RayScene {
     // InputError as build_bvh.
     RayScene(const Device& device, const std::vector<Triangle>& triangles)
         : RayScene(device, build_bvh(triangles, ray_layout(device))) {}
+
+    // RAY_SCENE_ARGUMENTS.
+    Arguments arguments() const {
+        return Arguments().add("bvh_nodes", nodes, "BvhNode").add("bvh_blocks", blocks).add("bvh_grid", grid);
+    }
 
     RayKernels kernels;
     Buffer<std::uint32_t> nodes;

@@ -29,7 +29,7 @@ constexpr double even_share_of_trials = 0.3, uniform_share = 0.15;
 constexpr std::uint32_t most_cells = 1024, photons_per_cell = 64;
 
 // Slots a map starts with; it grows with the first passes where that is too few.
-std::uint32_t first_capacity(std::uint32_t photons) { return photons + 1024; }
+std::uint32_t first_slots(std::uint32_t photons) { return photons + 1024; }
 
 std::uint32_t checked_photons(const Scene& scene) {
     const std::int64_t photons = scene.render.photons_per_pass;
@@ -46,11 +46,9 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       scene_(scene),
       on_device_(device, scene),
       photons_(checked_photons(scene)),
-      pass_(device, scene_, on_device_),
-      tracer_(device, on_device_.rays.kernels, photons_),
-      hash_builder_(device, first_capacity(photons_)),
-      hash_(device, "photon map", first_capacity(photons_)),
-      maps_(make_maps()),
+      hash_builder_(device, first_slots(photons_)),
+      hash_(device, "photon map", first_slots(photons_)),
+      photon_pass_(device, scene_, on_device_, photons_, first_slots(photons_), &hash_builder_, &hash_),
       view_(device, make_camera_record(scene.camera, scene.film.width, scene.film.height)),
       gather_(device, on_device_.rays.kernels, view_.camera()),
       camera_rays_(device, "camera rays", view_.ray_count()),
@@ -60,7 +58,7 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     const RayKernels& kernels = on_device_.rays.kernels;
     trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
     if (on_device_.has_fresnel)
-        trace_seen_ = kernels.program(device, "trace_reflections.cl").kernel("trace_reflections");
+        trace_reflections_ = kernels.program(device, "trace_reflections.cl").kernel("trace_reflections");
     const std::clock_t start = std::clock();
     set_up_passes();
     device_.finish();
@@ -68,12 +66,6 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     // Trials have added the emitters that they saw.
     film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
     device_.reset_stage_times();
-}
-
-PhotonMaps Renderer::make_maps() {
-    const std::uint32_t capacity = first_capacity(photons_);
-    const auto map = [&](const char* name) { return PhotonMap(device_, name, capacity, &hash_builder_, &hash_); };
-    return {map("fluorescence"), map("single scattering"), map("multiple scattering"), map("surface")};
 }
 
 // By trial passes. The first radius is that of photons that start at random and are all stored, so that it does not
@@ -89,14 +81,15 @@ void Renderer::set_up_passes() {
     }
     first_radius_mm_ = render.radius_mm.value_or(found_mm);
     if (chosen_emission(render) == Emission::stratified)
-        pass_.set_emission(EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
+        photon_pass_.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
     if (chosen_emission(render) == Emission::aimed) {
         try {
-            pass_.set_emission(aimed_cells());
+            photon_pass_.inputs().set_emission(aimed_cells());
         } catch (const InputError& error) {  // no memory for the trials
-            for (PhotonMap& map : maps_) map.track_paths(false);
+            for (PhotonMap& map : photon_pass_.maps()) map.track_paths(false);
             warn(std::string("photons are spread evenly in place of aimed: ") + error.what());
-            pass_.set_emission(EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
+            photon_pass_.inputs().set_emission(
+                EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
         }
     }
     if (!local) return;
@@ -107,19 +100,16 @@ void Renderer::set_up_passes() {
 // Photons have the same flux at every wavelength: a lamp of few wavelengths might be dark at all of those that were
 // drawn. What one photon stores in several places at once counts as one: it is no more light that found its own way.
 void Renderer::make_trial_photons(bool as_plain) {
-    pass_.make(trial_pass, photons_);
-    Flux16 even;
-    std::fill(std::begin(even.v), std::end(even.v), 1.0f);
-    pass_.buffers().photon_flux.upload(std::vector<Flux16>(scene_.lights.size(), even));
-    for (PhotonMap& map : maps_) map.clear();
-    PassBuffers plain = pass_.buffers();
+    photon_pass_.prepare(trial_pass, photons_);
+    photon_pass_.inputs().set_photon_flux(1.0f);
+    PathSampling plain = photon_pass_.sampling();
     plain.both_branches = false;
     plain.exits = 1;
     if (as_plain) {
         plain.weighted_distances = false;
         plain.store_direct = true;
     }
-    tracer_.trace(on_device_, plain, photons_, maps_);
+    photon_pass_.trace(plain);
 }
 
 // The camera sees the whole picture: a crop has its radius.
@@ -127,7 +117,7 @@ double Renderer::find_first_radius() {
     const CameraRecord whole = make_whole_record(scene_.camera, scene_.film.width, scene_.film.height);
     find_visible_points(whole);
     std::vector<PhotonHead> photons;
-    for (const PhotonMap& map : maps_)
+    for (const PhotonMap& map : photon_pass_.maps())
         for (const PhotonHead& head : map.heads().download(map.used())) photons.push_back(head);
     const double radius_mm = first_radius_mm(whole, gather_.points().download(), photons);
     return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
@@ -150,19 +140,18 @@ EmissionCells Renderer::aimed_cells() {
     EmissionTrial trial(device_, photons);
     EmissionCells cells = EmissionCells::stratified(lights, photons);
     if (cells.records().empty()) return cells;
-    for (PhotonMap& map : maps_) map.track_paths(true);
+    for (PhotonMap& map : photon_pass_.maps()) map.track_paths(true);
     for (std::uint32_t i = 0; i < trials; ++i) {
         if (i == trials / 2)
             cells = EmissionCells::aimed(lights, trial.samples(), even_share_of_trials, trial_cells, photons);
-        if (i == 0 || i == trials / 2) pass_.set_emission(cells);
+        if (i == 0 || i == trials / 2) photon_pass_.inputs().set_emission(cells);
         const std::uint32_t pass = trial_pass - 1 - i;
-        pass_.make(strata ? strata->draw(render.seed, pass) : pass_wavelengths(render, pass), pass, photons);
-        for (PhotonMap& map : maps_) map.clear();
-        tracer_.trace(on_device_, pass_.buffers(), photons, maps_);
+        photon_pass_.prepare(strata ? strata->draw(render.seed, pass) : pass_wavelengths(render, pass), pass, photons);
+        photon_pass_.trace();
         find_visible_points(view_.camera());
-        trial.add(cells, on_device_, pass_.buffers(), maps_, view_.camera(), gather_.points(), on_device_.textures);
+        trial.add(cells, photon_pass_.arguments(), photon_pass_.maps(), view_.camera(), gather_.points());
     }
-    for (PhotonMap& map : maps_) map.track_paths(false);
+    for (PhotonMap& map : photon_pass_.maps()) map.track_paths(false);
     return EmissionCells::aimed(lights, trial.samples(), uniform_share, cells_of(photons_), photons_);
 }
 
@@ -175,7 +164,7 @@ std::vector<PixelRadius> Renderer::find_local_radii(double radius_mm) {
     float counted_mm = least_count_factor * static_cast<float>(radius_mm);
     for (std::uint32_t level = 0; level < count_levels; ++level, counted_mm *= 2.0f)
         for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
-            const PhotonMap& map = maps_[m];
+            const PhotonMap& map = photon_pass_.maps()[m];
             if (map.used() == 0) continue;
             hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm,
                                 on_device_.maximum_mm, counted_mm);
@@ -189,47 +178,38 @@ double Renderer::radius_of(std::uint32_t pass) const {
 }
 
 void Renderer::render_pass(std::uint32_t pass) {
-    const double radius_mm = radius_of(pass);
-    pass_.make(pass, photons_);
-    for (PhotonMap& map : maps_) map.clear();
-    const PhotonAccount account = tracer_.trace(on_device_, pass_.buffers(), photons_, maps_);
+    photon_pass_.prepare(pass, photons_);
+    const PhotonAccount account = photon_pass_.trace();
     find_visible_points(view_.camera());
-    if (!pass_.buffers().store_direct)
-        gather_.add_direct_light(on_device_, seen_scene(), pass_.buffers().constants, film_);
-    gather_maps(radius_mm);
+    if (!photon_pass_.sampling().store_direct) gather_.add_direct_light(photon_pass_.arguments(), film_);
+    gather_maps(radius_of(pass));
     book_.add(account, image_weight_nm(scene_.render.lambda_min_nm, scene_.render.lambda_max_nm));
     ++passes_;
 }
 
 // What the camera's rays meet, at the end of all reflections; emitters among it are added to the film.
 void Renderer::find_visible_points(const CameraRecord& camera) {
-    view_.make_rays(camera, pass_.buffers().constants, camera_rays_);
-    const RayScene& rays = on_device_.rays;
+    const Arguments common = photon_pass_.arguments();
+    const Arguments rays = Arguments("rays", camera_rays_).add("hits", camera_hits_).add("n", view_.ray_count());
     const std::uint32_t count = view_.ray_count();
-    trace_.launch(rays.kernels.packets ? (count + ray_packet - 1) / ray_packet : count, count, rays.nodes, rays.blocks,
-                  rays.grid, camera_rays_, camera_hits_);
-    if (on_device_.has_fresnel)
-        trace_seen_.launch(count, camera, pass_.buffers().constants, rays.nodes, rays.blocks, rays.grid,
-                           on_device_.triangles, on_device_.shapes, on_device_.materials, camera_rays_, camera_hits_);
-    gather_.collect_points(seen_scene(), pass_.buffers().constants, camera_rays_, camera_hits_, film_);
+    view_.make_rays(camera, common, camera_rays_);
+    trace_.launch(on_device_.rays.kernels.packets ? (count + ray_packet - 1) / ray_packet : count, common, rays);
+    if (on_device_.has_fresnel) trace_reflections_.launch(count, common, rays, Arguments("camera", camera));
+    gather_.collect_points(common, camera_rays_, camera_hits_, film_);
 }
 
-GatherScene Renderer::seen_scene() const {
-    return {on_device_.triangles, on_device_.shapes,        on_device_.materials, on_device_.lights,
-            pass_.buffers().rows, pass_.buffers().radiance, on_device_.textures};
-}
-
-// Adds the photons to the film, map by map.
+// Adds the photons to the film, map by map: each is sorted for the radii of the points, and summed about them.
 void Renderer::gather_maps(double radius_mm) {
+    const Arguments common = photon_pass_.arguments();
     gather_.choose_radii();
-    gather_.measure_disks(on_device_, pass_.buffers().constants, static_cast<float>(radius_mm));
+    gather_.measure_disks(common, static_cast<float>(radius_mm));
     for (std::uint32_t m = 0; m < STOKES_MAP_COUNT; ++m) {
-        const PhotonMap& map = maps_[m];
+        const PhotonMap& map = photon_pass_.maps()[m];
         if (map.used() == 0) continue;
         for (const float radius_class : gather_.radius_classes()) {
             hash_builder_.build(hash_, map.heads(), map.flux(), map.used(), on_device_.minimum_mm,
                                 on_device_.maximum_mm, radius_class * static_cast<float>(radius_mm));
-            gather_.add_map(m, radius_class, hash_, seen_scene(), pass_.buffers().constants, film_);
+            gather_.add_map(common, m, radius_class, hash_, film_);
         }
     }
 }

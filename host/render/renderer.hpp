@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/image/film.hpp"
 #include "host/render/camera_view.hpp"
 #include "host/render/device_scene.hpp"
 #include "host/render/emission_cells.hpp"
 #include "host/render/gather.hpp"
 #include "host/render/ledger.hpp"
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
+#include "host/render/photon_pass.hpp"
 #include "host/render/spatial_hash.hpp"
 #include "host/scene/scene.hpp"
 
@@ -44,14 +43,12 @@ class Renderer {
     double trials_processor_s() const { return trials_processor_s_; }
 
   private:
-    PhotonMaps make_maps();
     void set_up_passes();
     void make_trial_photons(bool as_plain);
     double find_first_radius();
     EmissionCells aimed_cells();
     std::vector<PixelRadius> find_local_radii(double radius_mm);
     void find_visible_points(const CameraRecord& camera);
-    GatherScene seen_scene() const;
     void gather_maps(double radius_mm);
 
     Device device_;
@@ -59,15 +56,13 @@ class Renderer {
     DeviceScene on_device_;
     std::uint32_t photons_;
     double first_radius_mm_ = 0.0, trials_processor_s_ = 0.0;
-    PassMaker pass_;
-    PhotonTracer tracer_;
     HashBuilder hash_builder_;
     SpatialHash hash_;  // of one map at a time
-    PhotonMaps maps_;
+    PhotonPass photon_pass_;
     CameraView view_;
     Gather gather_;
-    Kernel trace_;       // camera rays, to what they meet first
-    Kernel trace_seen_;  // and on, where surfaces mirror
+    Kernel trace_;              // camera rays, to what they meet first
+    Kernel trace_reflections_;  // and on, where surfaces mirror
     Buffer<Ray> camera_rays_;
     Buffer<Hit> camera_hits_;
     Buffer<FilmValue> film_;

@@ -69,6 +69,14 @@ void SpatialHash::reserve(std::uint32_t capacity) {
     capacity_ = capacity;
 }
 
+Arguments SpatialHash::arguments() const {
+    return Arguments("hash_grid", grid_)
+        .add("cell_starts", cell_starts_)
+        .add("positions", positions_)
+        .add("normals", normals_)
+        .add("sorted_flux", flux_);
+}
+
 HashBuilder::HashBuilder(const Device& device, std::uint32_t capacity)
     : device_(device),
       histograms_(device, "photon hash: histograms", STOKES_HASH_CHUNKS * STOKES_HASH_BUCKETS),
@@ -102,15 +110,22 @@ void HashBuilder::build(SpatialHash& hash, const Buffer<PhotonHead>& heads, cons
     hash.reserve(slots);
     hash.grid_ = make_hash_grid(low_mm, high_mm, radius_mm, slots);
     hash.grid_.stride = hash.capacity_ + STOKES_HASH_PADDING;
-    const HashGrid& grid = hash.grid_;
-    find_keys_.launch(slots, heads, slots, grid, keys_);
-    count_buckets_.launch(STOKES_HASH_CHUNKS, keys_, slots, grid, histograms_);
-    scan_chunks_.launch(STOKES_HASH_BUCKETS / 16, histograms_, bucket_starts_);
-    scan_buckets_.launch(1, bucket_starts_);
-    scatter_slots_.launch(STOKES_HASH_CHUNKS, keys_, slots, grid, bucket_starts_, histograms_, entries_);
-    sort_buckets_.launch(STOKES_HASH_BUCKETS, entries_, bucket_starts_, grid, hash.cell_starts_, order_);
-    permute_photons_.launch((slots + 15) / 16, heads, flux, order_, hash.cell_starts_, grid, hash.positions_,
-                            hash.normals_, hash.flux_);
+    const Arguments all = Arguments("slots", slots)
+                              .add("map_heads", heads)
+                              .add("map_flux", flux)
+                              .add("keys", keys_)
+                              .add("histograms", histograms_)
+                              .add("bucket_starts", bucket_starts_)
+                              .add("entries", entries_, "uint2")
+                              .add("order", order_)
+                              .add(hash.arguments());
+    find_keys_.launch(slots, all);
+    count_buckets_.launch(STOKES_HASH_CHUNKS, all);
+    scan_chunks_.launch(STOKES_HASH_BUCKETS / 16, all);
+    scan_buckets_.launch(1, all);
+    scatter_slots_.launch(STOKES_HASH_CHUNKS, all);
+    sort_buckets_.launch(STOKES_HASH_BUCKETS, all);
+    permute_photons_.launch((slots + 15) / 16, all);
 }
 
 }  // namespace stokes

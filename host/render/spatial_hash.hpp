@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "kernels/shared/hash_grid.h"
 #include "kernels/shared/photon.h"
 
@@ -37,6 +37,8 @@ class SpatialHash {
     const Buffer<std::uint32_t>& normals() const { return normals_; }
     // [W/nm]
     const Buffer<Flux16>& flux() const { return flux_; }
+    // SORTED_MAP_ARGUMENTS.
+    Arguments arguments() const;
 
   private:
     friend class HashBuilder;

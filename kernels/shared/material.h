@@ -35,7 +35,7 @@ STOKES_ASSERT_SIZE(ShapeRecord, 8);
 typedef struct MaterialRecord {
     unsigned int kind;             // STOKES_BLACK, STOKES_DIFFUSE or STOKES_TRANSLUCENT; any other is black
     unsigned int flags;            // STOKES_MATERIAL_*
-    unsigned int transport;        // STOKES_TRANSPORT_*: of the light below its surface
+    unsigned int transport;        // STOKES_TRANSPORT_*: who scatters its light; `walk` only with SUBSURFACE
     unsigned int medium;           // SUBSURFACE: owner of its three power tables
     float fluorescent_fraction;    // c in [0, 1]: probability of meeting a fluorophore; `conserving`: where E is 1
     float eta;                     // refractive index

@@ -11,19 +11,30 @@
 #define STOKES_FATE_MISSED_EXIT 3u  // its exit point found no surface
 #define STOKES_FATE_MAP_FULL 4u     // no slot was left for its deposit
 #define STOKES_FATE_OVERFLOW 5u     // its flux grew beyond STOKES_FLUX_LIMIT times what it started with
-#define STOKES_FATE_EVENT_LIMIT 6u  // the pass's limit of events was reached
-#define STOKES_FATE_COUNT 7u
+#define STOKES_FATE_EVENT_LIMIT 5u  // the pass's limit of events was reached
+#define STOKES_FATE_COUNT 6u
 
 // Power tables above one can multiply light without end where it cannot leave; a path is cut at this multiple.
 #define STOKES_FLUX_LIMIT 1e6f
 
-// What happens at a hit. Written by classify_photons.
+// What happens at a hit.
 #define STOKES_EVENT_NONE 0u
 #define STOKES_EVENT_DIFFUSE 1u
-#define STOKES_EVENT_FLUORESCENCE 2u
-#define STOKES_EVENT_ELASTIC 3u   // model `walk`: everything that happens below a surface
-#define STOKES_EVENT_SPECULAR 4u  // reflected at a smooth surface; only the ray changes
-#define STOKES_EVENT_BRANCHES 5u  // fluorescence and elastic, each with its weight; the path goes on along one of them
+#define STOKES_EVENT_SPECULAR 2u  // reflected at a smooth surface; only the ray changes
+// Below a surface, from here on: the light meets a fluorophore; it scatters (model `walk`: all that happens there); or
+// both, each with its weight, and the path goes on along one of them.
+#define STOKES_EVENT_FLUORESCENCE 3u
+#define STOKES_EVENT_ELASTIC 4u
+#define STOKES_EVENT_BRANCHES 5u
+
+// The lists that the paths of a round are sorted into by what happens to them: one of diffuse surfaces, then those of
+// FLUORESCENCE, ELASTIC and BRANCHES of each transport model (STOKES_TRANSPORT_*).
+#define STOKES_LIST_DIFFUSE 0u
+#define STOKES_LIST_BELOW(transport, event) (1u + 3u * (transport) + (event)-STOKES_EVENT_FLUORESCENCE)
+#define STOKES_LIST_COUNT 10u
+// Of a path in no list: it goes on, or has ended.
+#define STOKES_LIST_NONE 254u
+#define STOKES_LIST_ENDED 255u
 
 // Sums over a pass's 16 wavelengths.
 typedef struct LightSum {
@@ -58,11 +69,11 @@ STOKES_ASSERT_SIZE(PathLedger, 96);
 // The accounts of a chunk of paths, added up. Written by sum_ledgers, read back by the host once a pass.
 typedef struct LedgerSums {
     LightSum light[8];      // emitted, absorbed, stokes_loss, escaped, dropped, roulette, created, stored
-    unsigned int fates[7];  // paths by STOKES_FATE_*
+    unsigned int fates[6];  // paths by STOKES_FATE_*
     unsigned int missed_exits;
     unsigned int rays;
     unsigned int reflections;
-    unsigned int pad[2];
+    unsigned int pad[3];
 } LedgerSums;
 STOKES_ASSERT_SIZE(LedgerSums, 112);
 
@@ -122,8 +133,10 @@ typedef struct EventRound {
     unsigned int exits;        // exits of an event and component, at least 1
     unsigned int branches;     // 1: the events are STOKES_EVENT_BRANCHES, or translucent ones may become that
     unsigned int drawn_rows;   // PAPER: first entry of the distance densities that r is drawn from; 0: the tables' own
+    unsigned int first_entry;  // of the round's list in the buffer of all lists
+    unsigned int pad[3];
 } EventRound;
-STOKES_ASSERT_SIZE(EventRound, 48);
+STOKES_ASSERT_SIZE(EventRound, 64);
 
 // Where the exits of a list of events stand, in groups of one component each: direct and scattered ones of a branch,
 // and with STOKES_EVENT_BRANCHES those of the other branch. Passed by value.
@@ -131,11 +144,9 @@ typedef struct ExitGroups {
     unsigned int count;          // 2 or 4
     unsigned int component[4];   // STOKES_MAP_*
     unsigned int first_exit[4];  // as in EventRound
-    unsigned int first_slot[4];
-    unsigned int slot_limit[4];
     unsigned int pad[3];
 } ExitGroups;
-STOKES_ASSERT_SIZE(ExitGroups, 80);
+STOKES_ASSERT_SIZE(ExitGroups, 48);
 
 // Where walk_photons stores, by map STOKES_MAP_*: F, S and M. Passed by value.
 typedef struct WalkSlots {
@@ -145,10 +156,13 @@ typedef struct WalkSlots {
 } WalkSlots;
 STOKES_ASSERT_SIZE(WalkSlots, 32);
 
-// Read back by the host once a round. Written by scan_lists.
+// Read back by the host once a round. Written by scan_lists; of a chunk, by count_lists and scan_lists.
 typedef struct ListCounts {
-    unsigned int alive, diffuse, fluorescence, elastic, branches;
+    unsigned int alive;                     // paths that go on, be they in a list or not
+    unsigned int count[STOKES_LIST_COUNT];  // paths in each list
+    unsigned int first[STOKES_LIST_COUNT];  // where each list starts in the buffer of all lists
+    unsigned int pad[3];
 } ListCounts;
-STOKES_ASSERT_SIZE(ListCounts, 20);
+STOKES_ASSERT_SIZE(ListCounts, 96);
 
 #endif

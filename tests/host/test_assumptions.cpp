@@ -6,6 +6,7 @@
 #include "host/scene/scene_reader.hpp"
 #include "host/scene/shapes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
@@ -133,7 +134,7 @@ TEST_CASE("Walks take bodies as they are, and surface fluorescence has no depth"
 TEST_CASE("The shipped scenes are as good as half-spaces") {
     for (const char* file : {"prisms.json", "sphere.json"}) {
         INFO(file);
-        CHECK(failed_assumptions(read_scene(std::string(STOKES_SOURCE_DIR "/scenes/") + file)) == Lines{});
+        CHECK(failed_assumptions(read_scene(source_path("scenes/") + file)) == Lines{});
     }
     CHECK(failed_assumptions(slab_scene(0.5, 30.0)).empty());
 }

@@ -3,6 +3,7 @@
 
 #include "host/image/exr.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
@@ -23,7 +24,7 @@ std::string edited_sphere_scene(const std::string& what, const std::string& with
     if (begin == std::string::npos) throw std::logic_error("not in the scene: " + what);
     text.replace(begin, what.size(), with);
     for (std::size_t at = text.find("../"); at != std::string::npos; at = text.find("../"))
-        text.replace(at, 3, STOKES_SOURCE_DIR "/");
+        text.replace(at, 3, source_path(""));
     return text;
 }
 

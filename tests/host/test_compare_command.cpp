@@ -12,6 +12,7 @@
 #include "host/image/error_map.hpp"
 #include "host/image/exr.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
@@ -236,7 +237,7 @@ TEST_CASE("compare says in one line what it cannot compare", "[compare_command]"
 TEST_CASE("the README names every key of the comparison's JSON", "[compare_command]") {
     const Pictures pictures;
     const Outcome run = pictures.compare(" --json --diff " + pictures.folder.file("d.png"));
-    const std::string readme = file_content(std::string(STOKES_SOURCE_DIR) + "/README.md");
+    const std::string readme = file_content(source_path("README.md"));
     const nlohmann::json json = nlohmann::json::parse(run.out);
     for (const nlohmann::json& object : {json, json["layers"]["whole"], json["diff"]})
         for (const auto& item : object.items()) {

@@ -4,6 +4,7 @@
 #include "host/core/text_input.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace stokes;
@@ -74,7 +75,7 @@ TEST_CASE("A CSV file that cannot be read says so") {
 
 TEST_CASE("Every shipped table over wavelength can be read, without negative values") {
     int tables = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(STOKES_SOURCE_DIR "/tables")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_path("tables"))) {
         const std::string path = entry.path().string();
         if (entry.path().extension() != ".csv") continue;
         if (read_file(path).find("\nwavelength_nm,") == std::string::npos) continue;

@@ -3,6 +3,7 @@
 
 #include "host/subsurface/green_table.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace stokes;
@@ -17,8 +18,8 @@ struct Outcome {
 
 Outcome run_tables(const std::string& arguments) {
     const TemporaryFolder log;
-    const std::string command = std::string("\"") + STOKES_BINARY + "\" tables " + arguments + " >\"" +
-                                log.file("out") + "\" 2>\"" + log.file("err") + "\"";
+    const std::string command = "\"" + stokes_program() + "\" tables " + arguments + " >\"" + log.file("out") +
+                                "\" 2>\"" + log.file("err") + "\"";
     const int code = WEXITSTATUS(std::system(command.c_str()));
     return {code, file_content(log.file("out")), file_content(log.file("err"))};
 }

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "host/render/green_walk.hpp"
+#include "host/render/transport/green_walk.hpp"
 #include "host/subsurface/escape.hpp"
 #include "host/subsurface/green_table.hpp"
 #include "host/subsurface/gzip.hpp"

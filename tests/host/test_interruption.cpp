@@ -10,6 +10,7 @@
 
 #include "host/core/csv_table.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
@@ -20,8 +21,8 @@ namespace {
 class TerminalRender {
   public:
     explicit TerminalRender(const std::vector<std::string>& extra, const std::string& cache = "") {
-        std::vector<std::string> words = {STOKES_BINARY, "render", sphere_scene, "--passes", "100000000",
-                                          "--photons",   "4000",   "--size",     "24x16"};
+        std::vector<std::string> words = {stokes_program(), "render", sphere_scene, "--passes", "100000000",
+                                          "--photons",      "4000",   "--size",     "24x16"};
         words.insert(words.end(), extra.begin(), extra.end());
         std::vector<char*> arguments;
         for (std::string& word : words) arguments.push_back(word.data());

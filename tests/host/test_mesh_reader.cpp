@@ -7,6 +7,7 @@
 #include "host/scene/mesh_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace stokes;
@@ -208,11 +209,11 @@ TEST_CASE("Mesh files are read by their ending") {
 }
 
 TEST_CASE("The shipped meshes are what their README says") {
-    const Mesh bunny = read_mesh(STOKES_SOURCE_DIR "/scenes/meshes/bunny_closed.ply");
+    const Mesh bunny = read_mesh(source_path("scenes/meshes/bunny_closed.ply"));
     CHECK(bunny.positions_mm.size() == 34839);
     CHECK(bunny.triangles.size() == 69674);
     CHECK(mesh_volume_mm3(bunny) > 0.0);
-    const Mesh dragon = read_mesh(STOKES_SOURCE_DIR "/scenes/meshes/dragon_48k.ply");
+    const Mesh dragon = read_mesh(source_path("scenes/meshes/dragon_48k.ply"));
     CHECK(dragon.positions_mm.size() == 22447);
     CHECK(dragon.triangles.size() == 44894);
     CHECK(mesh_volume_mm3(dragon) > 0.0);

@@ -8,6 +8,7 @@
 #include "host/scene/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/paths.hpp"
 
 using namespace stokes;
 using Catch::Matchers::Contains;
@@ -218,7 +219,7 @@ TEST_CASE("Steps, bends and sheets that face both ways are not flat") {
 TEST_CASE("The shipped dragon and bunny are closed") {
     for (const char* file : {"dragon_48k.ply", "bunny_closed.ply"}) {
         INFO(file);
-        Mesh mesh = read_mesh(std::string(STOKES_SOURCE_DIR "/scenes/meshes/") + file);
+        Mesh mesh = read_mesh(source_path("scenes/meshes/") + file);
         transform_mesh(mesh, glm::scale(askew(), glm::dvec3(270.0)));
         drop_degenerate_triangles(mesh);
         const BodyTopology topology = topology_of({mesh});

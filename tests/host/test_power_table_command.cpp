@@ -3,6 +3,7 @@
 
 #include "host/subsurface/power_table_json.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace stokes;
@@ -12,8 +13,8 @@ namespace {
 
 // Runs `stokes tables SCENE -o FOLDER`; its standard output and error go to files in the log folder.
 int run_tables(const std::string& scene, const std::string& folder, const TemporaryFolder& log) {
-    const std::string command = std::string("\"") + STOKES_BINARY + "\" tables \"" + scene + "\" -o \"" + folder +
-                                "\" >\"" + log.file("out") + "\" 2>\"" + log.file("err") + "\"";
+    const std::string command = "\"" + stokes_program() + "\" tables \"" + scene + "\" -o \"" + folder + "\" >\"" +
+                                log.file("out") + "\" 2>\"" + log.file("err") + "\"";
     return WEXITSTATUS(std::system(command.c_str()));
 }
 

@@ -3,6 +3,7 @@
 #include "host/core/csv_table.hpp"
 #include "host/scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
@@ -11,7 +12,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 const std::string few = " --photons 640 --device cpu ";
-const std::string prisms = std::string(STOKES_SOURCE_DIR) + "/scenes/prisms.json";
+const std::string prisms = source_path("scenes/prisms.json");
 const std::string components[] = {"specular", "single", "multiple", "fluorescence", "total"};
 
 // Excitation and emission of a dye, each in a file of its own.
@@ -93,7 +94,7 @@ TEST_CASE("probe takes materials and model from a scene", "[probe_command]") {
 // The medium of the scene's prisms, by flags.
 TEST_CASE("probe measures the same by flags and by scene", "[probe_command]") {
     const TemporaryFolder folder;
-    const std::string tables = std::string(STOKES_SOURCE_DIR) + "/tables/";
+    const std::string tables = source_path("tables/");
     put_file(folder.file("scene.json"),
              R"({"format": "stokes-scene", "version": 1, "camera": {"position_mm": [0, 9, 9], "target_mm": [0, 0, 0]},
                  "media": {"marble": {"sigma_s_per_mm": {"file": ")" +
@@ -228,7 +229,7 @@ TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
 TEST_CASE("the README names every key of the probe's JSON", "[probe_command]") {
     const TemporaryFolder folder;
     REQUIRE(run_stokes("probe --sigma-s 1 --sigma-a 1 --json " + folder.file("a.json") + few).code == 0);
-    const std::string readme = file_content(std::string(STOKES_SOURCE_DIR) + "/README.md");
+    const std::string readme = file_content(source_path("README.md"));
     const nlohmann::json probe = json_of(folder.file("a.json"));
     for (const auto& item : probe.items()) {
         CAPTURE(item.key());

@@ -1,11 +1,12 @@
 #include "host/scene/scene_reader.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace stokes;
 
 TEST_CASE("the README's scene is a scene", "[readme]") {
-    const std::string text = file_content(std::string(STOKES_SOURCE_DIR) + "/README.md");
+    const std::string text = file_content(source_path("README.md"));
     const std::string open = "```json\n";
     const std::size_t first = text.find(open);
     REQUIRE(first != std::string::npos);

@@ -4,6 +4,7 @@
 #include "host/scene/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace stokes;
@@ -181,7 +182,7 @@ TEST_CASE("A quantum yield is given, or follows from the conversion and the emis
     // Light from 300 to 830 nm counts.
     CHECK(yield("[[820, 0], [830, 1], [840, 0]]", "") == Approx(0.02 * 5.5));
     // PHYSICS section 4: the paper's conversion of 0.02 amounts to about 0.6.
-    for (const Fluorophore& dots : read_scene(STOKES_SOURCE_DIR "/scenes/prisms.json").fluorophores) {
+    for (const Fluorophore& dots : read_scene(source_path("scenes/prisms.json")).fluorophores) {
         INFO(dots.name);
         CHECK(dots.quantum_yield == Approx(0.65).margin(0.15));
     }
@@ -357,7 +358,7 @@ TEST_CASE("An emitter may have a material of its own") {
 }
 
 TEST_CASE("The exhibit: three dyes in two rows, each object standing on its prism") {
-    const Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/prisms.json");
+    const Scene scene = read_scene(source_path("scenes/prisms.json"));
     REQUIRE(scene.shapes.size() == 13);
     const auto find = [&](const std::string& name) -> const Shape& {
         for (const Shape& shape : scene.shapes) {
@@ -390,7 +391,7 @@ TEST_CASE("The exhibit: three dyes in two rows, each object standing on its pris
 }
 
 TEST_CASE("The small scene reads") {
-    const Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/sphere.json");
+    const Scene scene = read_scene(source_path("scenes/sphere.json"));
     CHECK(scene.shapes.size() == 3);
     CHECK(scene.render.transport == Transport::conserving);
     CHECK(mesh_bounds(scene.shapes[1].mesh).low_mm.y == Approx(0).margin(1e-5));

@@ -7,6 +7,7 @@
 #include "host/scene/scene.hpp"
 #include "host/scene/scene_keys.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 
 using namespace stokes;
 using Json = nlohmann::json;
@@ -15,7 +16,7 @@ using Names = std::set<std::string>;
 namespace {
 
 Json read_schema() {
-    std::ifstream file(STOKES_SOURCE_DIR "/scenes/scene.schema.json");
+    std::ifstream file(source_path("scenes/scene.schema.json"));
     return Json::parse(file);
 }
 

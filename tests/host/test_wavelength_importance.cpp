@@ -11,6 +11,7 @@
 #include "host/render/pass_spectra.hpp"
 #include "host/render/wavelength_importance.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/statistics.hpp"
 
 using namespace stokes;
@@ -23,7 +24,7 @@ constexpr std::size_t all = last_nm - first_nm + 1;
 using Values = std::vector<double>;  // by wavelength
 
 Spectrum shipped(const std::string& file, const std::string& column) {
-    return csv_spectrum(read_csv(std::string(STOKES_SOURCE_DIR) + "/tables/" + file), column, Outside::zero);
+    return csv_spectrum(read_csv(source_path("tables/" + file)), column, Outside::zero);
 }
 
 std::vector<std::pair<std::string, Spectrum>> shipped_lamps() {

@@ -13,6 +13,7 @@
 #include "host/scene/scene_reader.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stokes {
@@ -45,7 +46,7 @@ inline constexpr int reference_columns = 16, reference_rows = 12, block_edge = 3
 inline constexpr std::size_t reference_values = (std::size_t{reference_columns} * reference_rows + 1) * 3;
 
 inline Scene reference_scene(const ReferenceSetting& setting, std::uint32_t seed) {
-    Scene scene = read_scene(std::string(STOKES_SOURCE_DIR) + "/scenes/" + setting.scene_file);
+    Scene scene = read_scene(source_path("scenes/" + setting.scene_file));
     for (Light& light : scene.lights) {
         light.flux = Spectrum::constant(1.0);
         if (DiskBeam* beam = std::get_if<DiskBeam>(&light.kind)) {
@@ -95,7 +96,7 @@ struct Reference {
 };
 
 inline std::string reference_path(const ReferenceSetting& setting) {
-    return std::string(STOKES_SOURCE_DIR) + "/tests/image/references/" + setting.name + ".json";
+    return source_path("tests/image/references/" + setting.name + ".json");
 }
 
 inline std::string json_numbers(const std::vector<double>& values) {

@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/paths.hpp"
 
 using namespace stokes;
 
@@ -107,7 +108,7 @@ glm::dvec3 emitted_by_lamp(const Scene& scene, const Fluorophore& dots, std::uin
 constexpr std::uint32_t passes = 192;
 
 Scene prisms() {
-    Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/prisms.json");
+    Scene scene = read_scene(source_path("scenes/prisms.json"));
     scene.film = {96, 72, {}};
     scene.render.photons_per_pass = 12000;
     scene.render.radius_mm = 9.0;

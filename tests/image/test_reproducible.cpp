@@ -6,6 +6,7 @@
 #include "host/render/renderer.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_scenes.hpp"
 
@@ -108,8 +109,8 @@ TEST_CASE("a picture has the same bits for one thread and two", "[reproducible]"
     std::vector<ExrImage> images;
     for (const std::string threads : {"1", "2"}) {
         const std::string file = folder.path() + "/" + threads + ".exr";
-        const std::string command = std::string(STOKES_BINARY) + " render " + STOKES_SOURCE_DIR +
-                                    "/scenes/sphere.json --passes 1 --photons 20000 --size 40x30 --quiet --threads " +
+        const std::string command = stokes_program() + " render " + source_path("") +
+                                    "scenes/sphere.json --passes 1 --photons 20000 --size 40x30 --quiet --threads " +
                                     threads + " -o " + file;
         REQUIRE(std::system(command.c_str()) == 0);
         images.push_back(read_exr(file));

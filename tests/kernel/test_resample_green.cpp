@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/render/green_resampler.hpp"
+#include "host/render/transport/green_resampler.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/input_error.hpp"

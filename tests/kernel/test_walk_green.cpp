@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "host/render/green_walk.hpp"
+#include "host/render/transport/green_walk.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/input_error.hpp"

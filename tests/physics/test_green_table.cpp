@@ -3,8 +3,8 @@
 #include <random>
 #include <vector>
 
-#include "host/render/green_resampler.hpp"
-#include "host/render/green_walk.hpp"
+#include "host/render/transport/green_resampler.hpp"
+#include "host/render/transport/green_walk.hpp"
 #include "host/subsurface/escape.hpp"
 #include "host/subsurface/quadrature.hpp"
 #include "tests/support/catch.hpp"

@@ -7,6 +7,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/paths.hpp"
 
 using namespace stokes;
 
@@ -55,7 +56,7 @@ void compare(const Scene& scene) {
 
 // 24 comparisons of means at 3.5 standard errors, hardly independent: wrong by chance once in 100.
 TEST_CASE("importance-drawn wavelengths give the same picture with less noise", "[wavelength_noise]") {
-    const Scene scene = read_scene(std::string(STOKES_SOURCE_DIR) + "/scenes/sphere.json");
+    const Scene scene = read_scene(source_path("scenes/sphere.json"));
     compare(scene);
     Scene walk = scene;
     walk.render.transport = Transport::walk;

@@ -2,6 +2,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
@@ -9,7 +10,7 @@ using namespace stokes;
 namespace {
 
 Scene prisms() {
-    Scene scene = read_scene(STOKES_SOURCE_DIR "/scenes/prisms.json");
+    Scene scene = read_scene(source_path("scenes/prisms.json"));
     scene.film = {32, 24, {}};
     scene.render.photons_per_pass = 6000;
     return scene;

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/paths.hpp"
+
 namespace stokes {
 
 Device& test_device() {
@@ -12,7 +14,7 @@ Device& test_device() {
 }
 
 Program test_program(const std::string& name, const std::vector<std::string>& options) {
-    const std::string path = std::string(STOKES_SOURCE_DIR) + "/tests/kernel/" + name;
+    const std::string path = source_path("tests/kernel/" + name);
     std::ifstream in(path);
     if (!in) throw RunError(path + ": cannot read this test kernel");
     std::ostringstream text;

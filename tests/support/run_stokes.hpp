@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stokes {
@@ -18,14 +19,14 @@ struct Outcome {
 // environment: assignments such as "HOME=/nowhere", before the program's name.
 inline Outcome run_stokes(const std::string& arguments, const std::string& environment = "") {
     const TemporaryFolder folder;
-    const std::string command = environment + " " + STOKES_BINARY + " " + arguments + " > " + folder.file("out") +
+    const std::string command = environment + " " + stokes_program() + " " + arguments + " > " + folder.file("out") +
                                 " 2> " + folder.file("err") + " < /dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), file_content(folder.file("out")),
             file_content(folder.file("err"))};
 }
 
-inline const std::string sphere_scene = std::string(STOKES_SOURCE_DIR) + "/scenes/sphere.json";
+inline const std::string sphere_scene = source_path("scenes/sphere.json");
 inline const std::string small_render = " --passes 2 --photons 4000 --size 24x16 ";
 
 }  // namespace stokes

@@ -1,4 +1,4 @@
-#include "host/render/green_resampler.hpp"
+#include "host/render/transport/green_resampler.hpp"
 
 #include <fmt/format.h>
 
@@ -133,11 +133,20 @@ void GreenResampler::resample(const TableShape& shape, std::size_t first_row, co
     fraction_.upload(fraction);
     sigma_t_.upload(sigma);
     tables.u1.upload(u1.data(), u1.size(), first_row);
-    blend_.launch(blended_.size(), universal_, log_h_, lower_, fraction_, blended_);
-    resample_.launch(std::size_t{shape.row_count} * shape.r_count, universal_, shape, blended_, sigma_t_,
-                     tables.table16);
-    normalise_.launch(shape.row_count, shape, static_cast<std::uint32_t>(first_row), tables.u1, tables.table16,
-                      tables.mean_rows, tables.cumulative_rows);
+    const Arguments all = Arguments("shape", universal_)
+                              .add("target", shape)
+                              .add("first_row", static_cast<std::uint32_t>(first_row))
+                              .add("log_h", log_h_)
+                              .add("lower", lower_)
+                              .add("fraction", fraction_)
+                              .add("sigma_t", sigma_t_)
+                              .add("u1", tables.u1)
+                              .add("table16", tables.table16)
+                              .add("mean_rows", tables.mean_rows)
+                              .add("cumulative_rows", tables.cumulative_rows);
+    blend_.launch(blended_.size(), all, Arguments("blended", blended_));
+    resample_.launch(std::size_t{shape.row_count} * shape.r_count, all, Arguments().add("blended", blended_, "float"));
+    normalise_.launch(shape.row_count, all);
 }
 
 }  // namespace stokes

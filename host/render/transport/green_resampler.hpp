@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/subsurface/green_table.hpp"
 #include "kernels/shared/green.h"
 #include "kernels/shared/limits.h"

@@ -7,7 +7,7 @@
 #include "host/core/embedded.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
-#include "host/render/green_walk.hpp"
+#include "host/render/transport/green_walk.hpp"
 
 namespace stokes {
 namespace {

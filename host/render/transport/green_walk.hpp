@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/subsurface/green_table.hpp"
 #include "kernels/shared/green.h"
 

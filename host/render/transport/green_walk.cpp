@@ -1,4 +1,4 @@
-#include "host/render/green_walk.hpp"
+#include "host/render/transport/green_walk.hpp"
 
 #include <fmt/format.h>
 
@@ -118,7 +118,7 @@ GreenScores GreenWalker::walk(double source_depth, std::uint32_t stream, std::ui
     std::uint64_t walked = 0, items = 0;
     while (walked < walks) {
         launch.first_walk = static_cast<unsigned>(walked);
-        kernel_.launch(kItems, launch, albedos_, histograms_);
+        kernel_.launch(kItems, Arguments("walk", launch).add("albedos", albedos_).add("histograms", histograms_));
         const std::vector<Flux16> histograms = histograms_.download();
         for (std::size_t item = 0; item < kItems; ++item) {
             double total[kAlbedos] = {};

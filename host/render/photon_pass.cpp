@@ -1,0 +1,101 @@
+#include "host/render/photon_pass.hpp"
+
+namespace stokes {
+
+namespace {
+
+// Rounds of events after which the remaining paths are cut and counted. Roulette ends nearly all long before.
+constexpr std::uint32_t round_limit = 1000;
+
+PhotonMaps make_maps(const Device& device, std::uint32_t slots, HashBuilder* builder, SpatialHash* hash) {
+    const auto map = [&](const char* name) { return PhotonMap(device, name, slots, builder, hash); };
+    return {map("fluorescence"), map("single scattering"), map("multiple scattering"), map("surface")};
+}
+
+}  // namespace
+
+PhotonPass::PhotonPass(const Device& device, const Scene& scene, const DeviceScene& on_device, std::uint32_t photons,
+                       std::uint32_t first_slots, HashBuilder* builder, SpatialHash* hash)
+    : on_device_(on_device),
+      inputs_(device, scene, on_device),
+      sampling_(path_sampling(scene.render)),
+      paths_(device, photons),
+      maps_(make_maps(device, first_slots, builder, hash)),
+      exits_(device, on_device.rays.kernels),
+      transports_(make_transports(device, scene, on_device)) {
+    const Program emission(device, "emit_photons.cl");
+    emit_ = emission.kernel("emit_photons");
+    emit_stratified_ = emission.kernel("emit_stratified");
+    trace_ = on_device.rays.kernels.program(device, "trace_rays.cl").kernel("trace_closest");
+    classify_ = Program(device, "classify_photons.cl").kernel("classify_photons");
+    scatter_ = Program(device, "scatter_photons.cl").kernel("scatter_diffuse");
+}
+
+void PhotonPass::prepare(std::uint32_t pass, std::uint32_t photons) {
+    inputs_.prepare(pass, photons);
+    for (const auto& transport : transports_) transport->prepare(inputs_.spectra());
+}
+
+void PhotonPass::prepare(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons) {
+    inputs_.prepare(wavelengths, pass, photons);
+    for (const auto& transport : transports_) transport->prepare(inputs_.spectra());
+}
+
+PhotonAccount PhotonPass::trace(const PathSampling& sampling) {
+    for (PhotonMap& map : maps_) map.clear();
+    common_ = arguments().add(paths_.arguments());
+    DepositCounts counts;
+    emit();
+    EventRound round{};
+    for (std::uint32_t alive = inputs_.photons(); alive > 0; ++round.event) {
+        round.last = round.event + 1 >= round_limit ? 1 : 0;
+        round.count = alive;
+        round.branches = sampling.both_branches ? 1 : 0;
+        trace_rays(alive);
+        const ListCounts lists = classify(round);
+        const SubsurfaceEvent event{round, lists, sampling, common_, maps_, exits_, counts};
+        scatter_at_surfaces(event);
+        for (const auto& transport : transports_) transport->scatter(event);
+        paths_.end_round();
+        alive = lists.alive;
+    }
+    PhotonAccount account = paths_.sum_ledgers(inputs_.photons());
+    account.rays += counts.probes;
+    account.refused_slots = counts.refused_slots;
+    account.deposits = counts.deposits;
+    return account;
+}
+
+Arguments PhotonPass::arguments() const { return on_device_.arguments().add(inputs_.arguments()); }
+
+void PhotonPass::emit() const {
+    (inputs_.has_cells() ? emit_stratified_ : emit_).launch(inputs_.photons(), common_, paths_.list());
+}
+
+void PhotonPass::trace_rays(std::uint32_t count) const {
+    trace_.launch(count, Arguments("n", count), common_, paths_.list());
+}
+
+// Finds what happens to each photon where it landed, and lists them by that.
+ListCounts PhotonPass::classify(const EventRound& round) {
+    classify_.launch(round.count, Arguments("round", round), common_, paths_.list());
+    return paths_.make_lists(round.count);
+}
+
+// At diffuse surfaces. Photons straight from a light are stored unless shadow rays bring that light to the camera.
+void PhotonPass::scatter_at_surfaces(const SubsurfaceEvent& event) {
+    EventRound round = event.round;
+    round.count = event.lists.count[STOKES_LIST_DIFFUSE];
+    round.first_entry = event.lists.first[STOKES_LIST_DIFFUSE];
+    if (round.count == 0) return;
+    const bool stores = round.event > 0 || event.sampling.store_direct;
+    PhotonMap& map = maps_[STOKES_MAP_SURFACE];
+    const Slots slots = event.take_slots(map, round, stores ? 1 : 0);
+    round.first_slot = slots.first;
+    round.slot_limit = slots.limit;
+    scatter_.launch(round.count, Arguments("round", round), common_, map.arguments());
+    event.counts.deposits += stores ? round.count : 0;
+    event.counts.refused_slots += slots.refused;
+}
+
+}  // namespace stokes
