@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
     stokes::add_probe_command(app);
     stokes::add_compare_command(app);
     stokes::add_devices_command(app);
+    stokes::add_schema_command(app);
     try {
         check_subcommand(app, argc, argv);
         app.parse(argc, argv);

@@ -96,7 +96,7 @@ FORCE_INLINE Random4 low_discrepancy_draw(EventSample words, uint seed, uint str
 //   cumulative_rows of the distance samplers, event_samples [paths] where pass->low_discrepancy_exits has them.
 // Writes: exits and probes at round.first_exit + i round.exits and on: round.exits points of the tangent plane, as
 //   round.sampler has it. Without subsurface: the entry itself, once, from which nothing leaves scattered.
-__kernel void sample_exits(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, TABLE_ARGUMENTS,
+__kernel void sample_exits(EventRound round, PASS_ARGUMENTS, __global const MaterialRecord* materials, TABLE_ARGUMENTS,
                            __global const uint* event_lists, __global const SurfacePoint* points,
                            __global const Ray* rays, __global const EventSample* event_samples,
                            __global ExitPoint* exits, __global Probe* probes) {
@@ -237,7 +237,8 @@ FORCE_INLINE float16 let_through(const ExitPoint* exit_point, uint exit_index, c
 // Writes: the map's slots from round.first_slot on, one an exit: flux that leaves there (`paper`: eq. 3, 4 or 5),
 //   exit_flux, the same by exit, which the path takes along; ExitPoint.kept and .event_light, ledgers (stored, dropped
 //   deposits, the leader of re-emitted light).
-__kernel void deposit_exits(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, TABLE_ARGUMENTS,
+__kernel void deposit_exits(EventRound round, PASS_ARGUMENTS, __global const MaterialRecord* materials,
+                            __global const TableShape* table_shapes, __global const float16* table16,
                             __global const SurfacePoint* points, __global const float16* flux,
                             __global PathLedger* ledgers, __global ExitPoint* exits, __global float16* exit_flux,
                             MAP_ARGUMENTS) {

@@ -65,8 +65,9 @@ FORCE_INLINE uint pick_light(__global const LightRecord* lights, uint light_coun
 // surface lights [W mm^-2 sr^-1 nm^-1], irradiance across beams [W mm^-2 nm^-1]; spectra (row i: reflectance of
 // material i, without its texture), textures, pass (seed, pass, offset_mm, to_x, to_y, to_z). Adds to
 // film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2], in the surface layer.
-__kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, SURFACE_ARGUMENTS, LIGHT_ARGUMENTS,
-                               __global const float16* light_radiance, TEXTURE_ARGUMENTS,
+__kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, __global const Triangle* triangles,
+                               __global const ShapeRecord* shapes, LIGHT_ARGUMENTS,
+                               __global const float16* light_radiance, __global const TextureRecord* texture_records,
                                __global const GatherPoint* gather_points, __global float4* film) {
     const uint i = (uint)get_global_id(0);
     if (i >= count || (gather_points[i].maps & (1u << STOKES_MAP_SURFACE)) == 0u) return;

@@ -67,7 +67,8 @@ __kernel void emit_photons(__global const PassConstants* pass, LIGHT_ARGUMENTS, 
 // that
 //   start in it.
 // The photons of a cell lie on it as the points of a low-discrepancy sequence that goes on from pass to pass.
-__kernel void emit_stratified(__global const PassConstants* pass, EMISSION_ARGUMENTS, LIGHT_ARGUMENTS,
+__kernel void emit_stratified(__global const PassConstants* pass, EMISSION_ARGUMENTS,
+                              __global const LightRecord* lights, __global const float* light_areas,
                               __global const Triangle* triangles, __global const float16* photon_flux, PATH_ARGUMENTS,
                               __global uint* list, __global EventSample* event_samples) {
     const uint path = (uint)get_global_id(0);

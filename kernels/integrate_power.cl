@@ -14,7 +14,7 @@
 // them. Writes: exits and probes at round.first_exit + i, as sample_exits does: a point of the tangent plane, or
 // without
 //   subsurface the entry itself.
-__kernel void draw_exits(EventRound round, __global const PassConstants* pass, SURFACE_ARGUMENTS,
+__kernel void draw_exits(EventRound round, __global const PassConstants* pass, __global const MaterialRecord* materials,
                          __global const DistanceMixture* mixtures, __global const float* mix_rows,
                          __global const uint* event_lists, __global const SurfacePoint* points,
                          __global const Ray* rays, __global ExitPoint* exits, __global Probe* probes) {

@@ -28,7 +28,8 @@ FORCE_INLINE void fill_slot(__global PhotonHead* heads, __global float16* map_fl
 // law as `conserving` has, so that the two differ by what happens below the surface alone.
 // Ledger: absorbed and stokes_loss are what collisions take, roulette is what the weights and the roulette add and
 // take.
-__kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, SURFACE_ARGUMENTS,
+__kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS,
+                           __global const Triangle* triangles, __global const MaterialRecord* materials,
                            __global const uint* bodies, __global const uint* event_lists,
                            __global const SurfacePoint* points, PATH_ARGUMENTS, __global PhotonHead* fluorescence_heads,
                            __global float16* fluorescence_flux, __global PhotonHead* single_heads,

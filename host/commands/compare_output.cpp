@@ -12,40 +12,43 @@ namespace stokes {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr const char* channels[] = {"X", "Y", "Z"};
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.8g}", value) : "null"; }
-
 std::string shown(double value) { return std::isnan(value) ? "-" : fmt::format("{:.5g}", value); }
-
-std::string triple(const std::array<double, 3>& values) {
-    return fmt::format("[{}, {}, {}]", number(values[0]), number(values[1]), number(values[2]));
-}
 
 std::string counts(const LayerError& error) {
     if (error.not_finite == 0 && error.reference_not_finite == 0) return "";
     return fmt::format("  {} and {} pixels not finite", error.not_finite, error.reference_not_finite);
 }
 
-std::string layer_json(const LayerError& e) {
-    const std::string at = e.compared == 0 ? "null" : fmt::format("[{}, {}]", e.max_x, e.max_y);
-    const std::string channel = e.compared == 0 ? "null" : fmt::format("\"{}\"", channels[e.max_channel]);
-    return fmt::format(
-        "{{\"rmse\": {}, \"relative_rmse\": {}, \"psnr_db\": {}, \"mean_error\": {},\n      \"max_error\": {}, "
-        "\"max_error_pixel\": {}, \"max_error_channel\": {},\n      \"rmse_xyz\": {}, \"mean_error_xyz\": {},\n"
-        "      \"reference_mean\": {}, \"peak\": {}, \"pixels\": {}, \"not_finite\": {}, "
-        "\"reference_not_finite\": {}}}",
-        number(e.rmse), number(e.relative_rmse), number(e.psnr_db), number(e.mean_error), number(e.max_error), at,
-        channel, triple(e.rmse_xyz), triple(e.mean_error_xyz), number(e.reference_mean), number(e.peak), e.compared,
-        e.not_finite, e.reference_not_finite);
+Json layer_json(const LayerError& e) {
+    Json json = {{"rmse", e.rmse},
+                 {"relative_rmse", e.relative_rmse},
+                 {"psnr_db", e.psnr_db},
+                 {"mean_error", e.mean_error},
+                 {"max_error", e.max_error},
+                 {"max_error_pixel", nullptr},
+                 {"max_error_channel", nullptr},
+                 {"rmse_xyz", e.rmse_xyz},
+                 {"mean_error_xyz", e.mean_error_xyz},
+                 {"reference_mean", e.reference_mean},
+                 {"peak", e.peak},
+                 {"pixels", e.compared},
+                 {"not_finite", e.not_finite},
+                 {"reference_not_finite", e.reference_not_finite}};
+    if (e.compared > 0) {
+        json["max_error_pixel"] = {e.max_x, e.max_y};
+        json["max_error_channel"] = channels[e.max_channel];
+    }
+    return json;
 }
 
-std::string diff_json(const Comparison& c) {
-    if (c.diff_file.empty()) return "null";
-    return fmt::format(
-        "{{\"file\": {}, \"layer\": {}, \"from\": 0, \"to\": {}, \"pixels_above\": {}, \"not_finite\": {}}}",
-        json_quoted(c.diff_file), json_quoted(c.diff_layer), number(c.diff.largest_shown), c.diff.above,
-        c.diff.not_finite);
+Json diff_json(const Comparison& c) {
+    if (c.diff_file.empty()) return nullptr;
+    return {{"file", c.diff_file},        {"layer", c.diff_layer},        {"from", 0},
+            {"to", c.diff.largest_shown}, {"pixels_above", c.diff.above}, {"not_finite", c.diff.not_finite}};
 }
 
 // "whole 3, single 3" of the layers where count is not 0.
@@ -105,14 +108,16 @@ std::string scale_text(const ErrorMap& map, const std::string& layer) {
 }
 
 std::string comparison_json(const Comparison& c) {
-    std::string layers;
-    for (const auto& [name, error] : c.layers)
-        layers += fmt::format("{}\n    {}: {}", layers.empty() ? "" : ",", json_quoted(name), layer_json(error));
-    return fmt::format(
-        "{{\n  \"picture\": {},\n  \"reference\": {},\n  \"width\": {},\n  \"height\": {},\n  \"layers\": {{{}\n  }},\n"
-        "  \"diff\": {},\n  \"tolerance\": {},\n  \"passed\": {}\n}}\n",
-        json_quoted(c.picture), json_quoted(c.reference), c.width, c.height, layers, diff_json(c),
-        c.tolerance ? number(*c.tolerance) : "null", c.complaint().empty());
+    Json layers = Json::object();
+    for (const auto& [name, error] : c.layers) layers[name] = layer_json(error);
+    return json_text({{"picture", c.picture},
+                      {"reference", c.reference},
+                      {"width", c.width},
+                      {"height", c.height},
+                      {"layers", layers},
+                      {"diff", diff_json(c)},
+                      {"tolerance", c.tolerance ? Json(*c.tolerance) : Json()},
+                      {"passed", c.complaint().empty()}});
 }
 
 }  // namespace stokes

@@ -14,8 +14,7 @@ void add_devices_command(CLI::App& app) {
                        : d.gpu ? "GPU"
                                : "---",
                        d.name, d.platform, d.compute_units, static_cast<double>(d.memory_bytes) / (1 << 30), d.version,
-                       ray_shape_words[static_cast<std::size_t>(choose_ray_shape(d))],
-                       d.available ? "" : "  not available");
+                       word_of(choose_ray_shape(d)), d.available ? "" : "  not available");
     });
 }
 

@@ -21,8 +21,6 @@ const char* const material_flags[] = {"--sigma-s",  "--sigma-a",    "--eta",    
                                       "--fraction", "--excitation", "--emission", "--quantum-yield"};
 const char* const spectrum_type = "NUMBER|FILE.csv[:COLUMN]";
 
-constexpr int first_lambda_nm = 300, last_lambda_nm = 830;
-
 // FILE, or FILE:COLUMN where there is no file of the whole name; without a column the first after the
 // wavelengths.
 Spectrum csv_column(const std::string& text, Outside outside) {
@@ -74,7 +72,7 @@ Fluorophore fluorophore_of(const MaterialFlags& flags) {
     fluorophore.excitation = spectrum_of("--excitation", flags.excitation, Outside::zero, 1.0);
     fluorophore.emission = spectrum_of("--emission", flags.emission, Outside::zero, 1.0);
     fluorophore.quantum_yield = flags.quantum_yield;
-    if (!(fluorophore.emission.sum_1nm(first_lambda_nm, last_lambda_nm) > 0.0))
+    if (!(fluorophore.emission.sum_1nm() > 0.0))
         throw InputError(fmt::format("--emission: expected some from {} to {} nm, got none at any whole nanometre",
                                      first_lambda_nm, last_lambda_nm));
     return fluorophore;

@@ -16,16 +16,12 @@ CLI::Validator number_in(double low, double high) {
     return CLI::Validator(check, range);
 }
 
-CLI::Validator word_of(const std::vector<std::string>& words) {
+CLI::Validator one_of_words(const std::vector<std::string>& words) {
     const auto check = [words](const std::string& text) {
         if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
         return fmt::format("expected {}, got \"{}\"", fmt::join(words, ", "), text);
     };
     return CLI::Validator(check, fmt::format("{}", fmt::join(words, ", ")));
-}
-
-std::size_t index_of_word(const std::string& word, const std::vector<std::string>& words) {
-    return static_cast<std::size_t>(std::find(words.begin(), words.end(), word) - words.begin());
 }
 
 }  // namespace stokes

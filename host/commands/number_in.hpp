@@ -12,8 +12,6 @@ namespace stokes {
 CLI::Validator number_in(double low, double high);
 
 // One of some words.
-CLI::Validator word_of(const std::vector<std::string>& words);
-// The place among words of one that word_of() let through.
-std::size_t index_of_word(const std::string& word, const std::vector<std::string>& words);
+CLI::Validator one_of_words(const std::vector<std::string>& words);
 
 }  // namespace stokes

@@ -15,35 +15,35 @@
 #include "host/commands/outputs.hpp"
 #include "host/commands/probe_output.hpp"
 #include "host/commands/progress.hpp"
+#include "host/commands/setting_flags.hpp"
 #include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 
 namespace stokes {
 
 namespace {
 
 struct ProbeOptions {
-    std::string scene_file, material, model, json_file, matrix_file;
+    std::string scene_file, material, json_file, matrix_file;
     DeviceFlags device;
-    int lambda_nm = 365, lambda_min_nm = 0, lambda_max_nm = 0;
+    int lambda_nm = 365;
     double r_max_mm = 0.0;
     MaterialFlags flags;
+    FlagValues render;
     ProbeSettings settings;
     bool quiet = false;
 };
 
-// What a scene does not say, the command line or the default does.
-ProbeSettings settings_of(const CLI::App& command, const ProbeOptions& options, const RenderSettings& render) {
+ProbeSettings settings_of(const CLI::App& command, const ProbeOptions& options, const RenderSettings& given) {
+    const ResolvedSettings render = resolved(given);
     ProbeSettings settings = options.settings;
     settings.transport = render.transport;
+    settings.first_collision_only = render.first_collision_only;
+    settings.seed = render.seed;
     settings.lambda_min_nm = render.lambda_min_nm;
     settings.lambda_max_nm = render.lambda_max_nm;
-    if (command.count("--model"))
-        settings.transport = static_cast<Transport>(index_of_word(options.model, transport_words));
-    if (command.count("--lambda-min")) settings.lambda_min_nm = options.lambda_min_nm;
-    if (command.count("--lambda-max")) settings.lambda_max_nm = options.lambda_max_nm;
     if (command.count("--r-max")) settings.r_max_mm = options.r_max_mm;
     return settings;
 }
@@ -82,15 +82,15 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
     check_source(command, options);
     check_outputs({options.json_file, options.matrix_file}, options.scene_file);
     ProbeMaterial material;
-    RenderSettings render;
+    Scene scene;
     if (options.scene_file.empty()) {
         material = material_of(command, options.flags);
     } else {
-        const Scene scene = read_scene(options.scene_file);
+        scene = read_scene(options.scene_file);
         material = probe_material(scene, options.material);
-        render = scene.render;
     }
-    const ProbeSettings settings = settings_of(command, options, render);
+    read_settings(options.render, scene);
+    const ProbeSettings settings = settings_of(command, options, scene.render);
     if (material.fresnel && settings.transport == Transport::paper)
         warn("the model paper leaves out Fresnel reflection");
     const Device device = open_device(options.device);
@@ -120,29 +120,19 @@ void add_probe_command(CLI::App& app) {
     command->add_option("scene", options->scene_file, "Scene file")->type_name("SCENE.json");
     command->add_option("--material", options->material, "Translucent material of the scene")->type_name("NAME");
     add_material_flags(*command, options->flags);
-    command->add_option("--model", options->model, "Transport model; default: the scene's, else conserving")
-        ->type_name("MODEL")
-        ->check(word_of(transport_words));
-    command->add_flag("--first-collision", settings.first_collision_only,
-                      "walk: fluorescence at the first collision only, as the other models have it");
+    add_setting_flags(*command, options->render,
+                      {"transport", "first_collision_only", "seed", "lambda_min_nm", "lambda_max_nm"});
     command->add_option("--lambda", options->lambda_nm, "Wavelength of the beam [nm]; default 365")
         ->type_name("NM")
-        ->check(CLI::Range(300, 830));
+        ->check(CLI::Range(first_lambda_nm, last_lambda_nm));
     command->add_option("--angle", settings.angle_deg, "Angle of incidence [deg]; default 0")
         ->type_name("DEG")
         ->check(number_in(0.0, 89.9));
     command->add_option("--photons", settings.photons, "Photons for each set of 16 wavelengths; default 1000000")
         ->check(number_in(least_probe_photons, 1e12));
-    command->add_option("--seed", settings.seed, "Seed of the random numbers; default 1");
     command->add_option("--step", settings.step_nm, "Step of the wavelengths that are read [nm]; default 5")
         ->type_name("NM")
         ->check(CLI::Range(1, 50));
-    command->add_option("--lambda-min", options->lambda_min_nm, "The first of them; default: the scene's, else 300")
-        ->type_name("NM")
-        ->check(CLI::Range(300, 830));
-    command->add_option("--lambda-max", options->lambda_max_nm, "Their end; default: the scene's, else 780")
-        ->type_name("NM")
-        ->check(CLI::Range(300, 830));
     command->add_option("--bins", settings.bins, "Bins of distance from the beam; default 40")
         ->check(CLI::Range(2, 10000));
     command->add_option("--r-max", options->r_max_mm, "End of the last of them [mm]; default: from the material")

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "host/core/json_text.hpp"
 
@@ -12,12 +11,12 @@ namespace stokes {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr std::array<const char*, probe_component_count> names = {"specular", "single", "multiple", "fluorescence",
                                                                   "total"};
 
-const std::string& model_of(const ProbeSettings& settings) {
-    return transport_words[static_cast<std::size_t>(settings.transport)];
-}
+const std::string& model_of(const ProbeSettings& settings) { return word_of(settings.transport); }
 
 std::string share_line(const char* name, const Measured& m, const char* unit = "") {
     return fmt::format("  {:<22}{:>9.5f} +- {:.5f}{}\n", name, m.value, m.standard_error, unit);
@@ -50,34 +49,20 @@ std::string radial_table(const ProbeResult& result) {
     return text;
 }
 
-std::string number(double value) { return fmt::format("{:.8g}", value); }
+Json part_of(const Measured& m, double Measured::*part) { return m.*part; }
 
-std::string array(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ", ")); }
-
-template <class T, class Text>
-std::string array_of(const std::vector<T>& values, const Text& text) {
-    std::vector<std::string> items;
-    for (const T& value : values) items.push_back(text(value));
-    return array(items);
+Json part_of(const std::vector<Measured>& list, double Measured::*part) {
+    Json values = Json::array();
+    for (const Measured& m : list) values.push_back(m.*part);
+    return values;
 }
 
-std::string value_of(const Measured& m) { return number(m.value); }
-std::string error_of(const Measured& m) { return number(m.standard_error); }
-
-using Members = std::vector<std::pair<std::string, std::string>>;
-
-std::string object(const Members& members, const char* indent) {
-    std::string text;
-    for (const auto& [key, value] : members)
-        text += fmt::format("{}\n{}  {}: {}", text.empty() ? "" : ",", indent, json_quoted(key), value);
-    return fmt::format("{{{}\n{}}}", text, indent);
-}
-
-// Every component from the first one on, as text.
-template <class Values, class Text>
-std::string by_component(const Values& values, const Text& text, Members members = {}, std::size_t first = 0) {
-    for (std::size_t c = first; c < probe_component_count; ++c) members.emplace_back(names[c], text(values[c]));
-    return object(members, "  ");
+// Adds every component from the first one on: of each measurement its value or its standard error.
+template <class Measurements>
+Json by_component(const Measurements& measurements, double Measured::*part, std::size_t first = probe_specular,
+                  Json members = Json::object()) {
+    for (std::size_t c = first; c < probe_component_count; ++c) members[names[c]] = part_of(measurements[c], part);
+    return members;
 }
 
 }  // namespace
@@ -103,33 +88,30 @@ std::string probe_table(const ProbeResult& result, const ProbeMaterial& material
 }
 
 std::string probe_json(const ProbeResult& result, const ProbeMaterial& material, const ProbeSettings& settings) {
-    const auto values = [](const std::vector<Measured>& list) { return array_of(list, value_of); };
-    const auto errors = [](const std::vector<Measured>& list) { return array_of(list, error_of); };
-    const auto integer = [](int value) { return std::to_string(value); };
-    const Members members = {
-        {"model", json_quoted(model_of(settings))},
-        {"first_collision", settings.first_collision_only ? "true" : "false"},
-        {"material", json_quoted(material.name)},
-        {"lambda_ex_nm", integer(result.lambda_ex_nm)},
-        {"angle_deg", number(settings.angle_deg)},
-        {"photons", std::to_string(result.photons)},
-        {"wavelength_sets", std::to_string(result.sets)},
-        {"batches", std::to_string(result.batches)},
-        {"seed", std::to_string(settings.seed)},
-        {"step_nm", integer(settings.step_nm)},
-        {"lambda_nm", array_of(result.lambda_nm, integer)},
-        {"reflectance", by_component(result.reflectance, values)},
-        {"standard_error", by_component(result.reflectance, errors)},
-        {"totals", by_component(result.totals, value_of)},
-        {"totals_standard_error", by_component(result.totals, error_of)},
-        {"emitted_photons", value_of(result.emitted_photons)},
-        {"emitted_photons_standard_error", error_of(result.emitted_photons)},
-        {"radial", by_component(result.radial, values, {{"r_mm", array_of(result.r_mm, number)}}, probe_single)},
-        {"radial_standard_error", by_component(result.radial, errors, {}, probe_single)},
-        {"beyond", by_component(result.beyond, value_of, {}, probe_single)},
-        {"dropped", number(result.dropped)},
-    };
-    return object(members, "") + "\n";
+    constexpr auto value = &Measured::value, error = &Measured::standard_error;
+    return json_text({
+        {"model", model_of(settings)},
+        {"first_collision", settings.first_collision_only},
+        {"material", material.name},
+        {"lambda_ex_nm", result.lambda_ex_nm},
+        {"angle_deg", settings.angle_deg},
+        {"photons", result.photons},
+        {"wavelength_sets", result.sets},
+        {"batches", result.batches},
+        {"seed", settings.seed},
+        {"step_nm", settings.step_nm},
+        {"lambda_nm", result.lambda_nm},
+        {"reflectance", by_component(result.reflectance, value)},
+        {"standard_error", by_component(result.reflectance, error)},
+        {"totals", by_component(result.totals, value)},
+        {"totals_standard_error", by_component(result.totals, error)},
+        {"emitted_photons", result.emitted_photons.value},
+        {"emitted_photons_standard_error", result.emitted_photons.standard_error},
+        {"radial", by_component(result.radial, value, probe_single, {{"r_mm", result.r_mm}})},
+        {"radial_standard_error", by_component(result.radial, error, probe_single)},
+        {"beyond", by_component(result.beyond, value, probe_single)},
+        {"dropped", result.dropped},
+    });
 }
 
 std::string probe_matrix_csv(const std::vector<ProbeResult>& results, const ProbeMaterial& material,

@@ -10,8 +10,8 @@
 #include "host/commands/progress.hpp"
 #include "host/core/error.hpp"
 #include "host/render/transport/green_walk.hpp"
-#include "host/scene/scene_reader.hpp"
-#include "host/subsurface/power_table_json.hpp"
+#include "host/scene/readers/scene_reader.hpp"
+#include "host/subsurface/power_table.hpp"
 
 namespace stokes {
 namespace {

@@ -1,13 +1,21 @@
-// Text for JSON files.
+// The text of JSON files.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 namespace stokes {
 
-// text as a JSON string with its quotation marks; bytes that are not UTF-8 become U+FFFD, so that the file is
-// valid whatever a path or a driver's name holds.
-std::string json_quoted(std::string_view text);
+// Members keep their order, bytes that are not UTF-8 become U+FFFD, and numbers that are not finite become null, so
+// that the file is valid whatever a path or a driver's name holds. indent: blanks a level; -1 for a single line.
+inline std::string json_text(const nlohmann::ordered_json& json, int indent = 2) {
+    return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+inline std::string json_quoted(const std::string& text) {
+    std::string quoted = json_text(text, -1);
+    quoted.pop_back();
+    return quoted;
+}
 
 }  // namespace stokes

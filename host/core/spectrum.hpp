@@ -5,6 +5,9 @@
 
 namespace stokes {
 
+// Whole nanometres at which the renderer may ask for a spectrum.
+inline constexpr int first_lambda_nm = 300, last_lambda_nm = 830;
+
 // What a spectrum is outside the wavelengths of its table.
 enum class Outside { zero, hold };
 
@@ -19,7 +22,7 @@ struct Spectrum {
     Spectrum scaled(double factor) const;
     double maximum() const;
     // Sum of at() over the integer wavelengths first_nm..last_nm: the integral on the renderer's 1 nm grid.
-    double sum_1nm(int first_nm, int last_nm) const;
+    double sum_1nm(int first_nm = first_lambda_nm, int last_nm = last_lambda_nm) const;
 
     static Spectrum constant(double value);
 };

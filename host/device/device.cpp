@@ -141,6 +141,15 @@ void Device::finish() const {
     collect();
 }
 
+cl::Program Device::program(const std::string& source, const std::string& flags) const {
+    const std::pair<std::string, std::string> key(source, flags);
+    const auto known = shared_->programs.find(key);
+    if (known != shared_->programs.end()) return known->second;
+    const cl::Program program(shared_->context, source);
+    program.build(flags.c_str());
+    return shared_->programs.emplace(key, program).first->second;
+}
+
 void Device::record(const std::string& kernel_name, const cl::Event& event) const {
     shared_->pending.emplace_back(kernel_name, event);
 }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "host/core/error.hpp"
+#include "host/core/words.hpp"
 
 namespace stokes {
 
@@ -37,8 +38,8 @@ struct DeviceDescription {
 // take masks by the processor's own instructions. scalar: one after the other, for devices whose work-items are lanes
 // themselves.
 enum class RayShape { avx512, avx2, portable, scalar };
-// As the command line spells them, in the order of RayShape.
-inline const std::vector<std::string> ray_shape_words = {"avx512", "avx2", "portable", "scalar"};
+template <>
+inline const Words words_of<RayShape> = {"avx512", "avx2", "portable", "scalar"};
 
 // By what the device says of itself: whether it is a CPU, and the width of its vectors. x86: whether this program runs
 // on such a processor, of which a CPU device is part.
@@ -67,6 +68,9 @@ class Device {
 
     // Waits for all launches.
     void finish() const;
+
+    // Built when first asked for. Errors: cl::Error.
+    cl::Program program(const std::string& source, const std::string& flags) const;
 
     // Directory to read kernels from in place of the embedded text; empty: embedded.
     void set_kernel_directory(const std::string& directory) { shared_->kernel_directory = directory; }
@@ -110,6 +114,7 @@ class Device {
         DeviceDescription description;
         cl::Device device;
         cl::Context context;
+        std::map<std::pair<std::string, std::string>, cl::Program> programs;  // by source and flags
         cl::CommandQueue queue;
         std::string kernel_directory;
         std::size_t local_size = 64;
@@ -131,6 +136,8 @@ class Allocation {
     bool allocated() const { return owner_ != nullptr; }
     const cl::Buffer& buffer() const { return owner_->buffer; }
     const Device& device() const { return owner_->device; }
+    // Keeps the memory.
+    std::shared_ptr<const void> owner() const { return owner_; }
     void write(const void* data, std::size_t bytes, std::size_t offset) const;
     void read(void* data, std::size_t bytes, std::size_t offset) const;
     void copy_to(const Allocation& target, std::size_t bytes) const;
@@ -164,6 +171,7 @@ class Buffer {
     std::size_t size() const { return size_; }
     bool allocated() const { return allocation_.allocated(); }
     const cl::Buffer& cl_buffer() const { return allocation_.buffer(); }
+    std::shared_ptr<const void> owner() const { return allocation_.owner(); }
 
     void upload(const T* data, std::size_t count, std::size_t offset = 0) const {
         check(count, offset);

@@ -51,7 +51,8 @@ std::string_view device_type_name() {
     return full.substr(full.rfind(':') + 1);
 }
 
-// Arguments by name: buffers, or scalars and structs by value. Groups of them are made where the buffers are owned.
+// Arguments by name: buffers, whose memory they keep, or scalars and structs by value. Groups of them are made where
+// the buffers are owned.
 class Arguments {
   public:
     Arguments() = default;
@@ -64,15 +65,17 @@ class Arguments {
     template <class T>
     Arguments& add(const char* name, const Buffer<T>& buffer, std::string_view type = device_type_name<T>()) {
         const cl_mem memory = buffer.allocated() ? buffer.cl_buffer()() : nullptr;
-        return put(name, type, true, &memory, sizeof memory);
+        put(name, type, true, &memory, sizeof memory);
+        values_.back().owner = buffer.owner();
+        return *this;
     }
     template <class T>
-    Arguments& add(const char* name, const T& value) {
+    Arguments& add(const char* name, const T& value, std::string_view type = device_type_name<T>()) {
         static_assert(std::is_trivially_copyable<T>::value, "kernel arguments are plain data");
         static_assert(!std::is_same<T, bool>::value && !std::is_same<T, double>::value && sizeof(T) % 4 == 0,
                       "kernel arguments are 32-bit words");
         static_assert(sizeof(T) <= sizeof(Value::bytes), "larger structs travel in buffers");
-        return put(name, device_type_name<T>(), false, &value, sizeof value);
+        return put(name, type, false, &value, sizeof value);
     }
     Arguments& add(const Arguments& group) {
         values_.insert(values_.end(), group.values_.begin(), group.values_.end());
@@ -85,21 +88,15 @@ class Arguments {
         bool pointer;
         std::size_t size;
         alignas(16) std::array<unsigned char, 96> bytes;
-
-        // A buffer that was never made.
-        bool empty() const {
-            cl_mem memory;
-            std::memcpy(&memory, bytes.data(), sizeof memory);
-            return memory == nullptr;
-        }
+        std::shared_ptr<const void> owner;  // of a buffer; none where it was never made
     };
     const std::vector<Value>& values() const { return values_; }
 
   private:
     Arguments& put(const char* name, std::string_view type, bool pointer, const void* data, std::size_t size) {
-        Value value{name, type, name_hash(name), pointer, size, {}};
+        Value value{name, type, name_hash(name), pointer, size, {}, {}};
         std::memcpy(value.bytes.data(), data, size);
-        values_.push_back(value);
+        values_.push_back(std::move(value));
         return *this;
     }
     std::vector<Value> values_;

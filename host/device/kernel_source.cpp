@@ -1,9 +1,9 @@
-#include <fstream>
 #include <set>
 #include <sstream>
 
 #include "host/core/embedded.hpp"
 #include "host/device/kernel.hpp"
+#include "host/core/text_input.hpp"
 
 namespace stokes {
 
@@ -42,11 +42,7 @@ std::string read_kernel_file(const std::string& file, const std::string& directo
         if (found == embedded_files().end()) throw RunError("kernel file kernels/" + file + " is not in this program");
         return found->second;
     }
-    std::ifstream in(directory + "/" + file, std::ios::binary);
-    if (!in) throw RunError(directory + "/" + file + ": cannot read this kernel file");
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
+    return read_file(directory + "/" + file);
 }
 
 std::string expand_kernel_source(const std::string& name, const std::string& text, const std::string& directory) {

@@ -23,8 +23,7 @@ void Program::build(const std::string& name, const std::string& text, const std:
     source_ = expand_kernel_source(name, text, device_.kernel_directory());
     const SignalsHeldBack held_back;
     try {
-        program_ = cl::Program(device_.context(), source_);
-        program_.build(flags.c_str());
+        program_ = device_.program(source_, flags);
     } catch (const cl::BuildError& error) {
         std::string log;
         for (const auto& entry : error.getBuildLog()) log += entry.second;
@@ -66,7 +65,7 @@ void Kernel::bind(std::size_t index, const Arguments* const* groups, std::size_t
     if (found == nullptr) fail("is bound by no group");
     if (found->pointer != wanted.pointer || found->type != wanted.type)
         fail("got " + std::string(found->type) + (found->pointer ? "*" : ""));
-    if (found->pointer && found->empty()) fail("has no buffer yet");
+    if (found->pointer && !found->owner) fail("has no buffer yet");
     const cl_int error = ::clSetKernelArg(kernel_(), static_cast<cl_uint>(index), found->size,
                                           static_cast<const void*>(found->bytes.data()));
     if (error != CL_SUCCESS) fail("was refused, OpenCL error " + std::to_string(error));

@@ -50,7 +50,7 @@ const ColourMatching& cie1931() {
 glm::dvec3 xyz_of(const Spectrum& radiance) {
     const ColourMatching& matching = cie1931();
     glm::dvec3 sum(0.0);
-    for (int lambda = 300; lambda <= 830; ++lambda)
+    for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda)
         sum += radiance.at(lambda) * glm::dvec3(matching.x.at(lambda), matching.y.at(lambda), matching.z.at(lambda));
     return luminous_efficacy * sum;
 }
@@ -74,14 +74,6 @@ glm::dvec3 rec709_of_oklab(const glm::dvec3& lab) {
     static const glm::dmat3 cube_roots_from_oklab = glm::inverse(oklab_from_cube_roots);
     const glm::dvec3 root = lab * cube_roots_from_oklab;
     return (root * root * root) * rec709_from_cones;
-}
-
-double srgb_encode(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
-double srgb_decode(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 }  // namespace stokes

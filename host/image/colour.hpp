@@ -41,8 +41,4 @@ const glm::dmat3& rec709_from_xyz();  // the matrix itself, columns first as GLM
 glm::dvec3 oklab_of_rec709(const glm::dvec3& rgb);
 glm::dvec3 rec709_of_oklab(const glm::dvec3& lab);
 
-// The sRGB transfer function of IEC 61966-2-1, linear [0, 1] to encoded [0, 1] and back.
-double srgb_encode(double linear);
-double srgb_decode(double encoded);
-
 }  // namespace stokes

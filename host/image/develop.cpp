@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/srgb.hpp"
 #include "host/image/colour.hpp"
 
 namespace stokes {

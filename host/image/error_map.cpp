@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "host/core/srgb.hpp"
 #include "host/image/colour.hpp"
 
 namespace stokes {

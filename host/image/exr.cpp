@@ -13,12 +13,10 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
 
 #include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
+#include "host/core/text_input.hpp"
 #include "host/image/memory_stream.hpp"
 
 namespace stokes {
@@ -75,16 +73,6 @@ std::string encode(const std::string& path, const FilmImage& film, const Metadat
         file.writePixels(film.height);
     }  // the end of the file object completes its table of scan lines
     return std::move(stream.bytes);
-}
-
-std::string read_bytes(const std::string& path) {
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (error) throw InputError(fmt::format("{}: cannot read: {}", path, error.message()));
-    std::string bytes(size, '\0');
-    std::ifstream file(path, std::ios::binary);
-    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw InputError(path + ": cannot read");
-    return bytes;
 }
 
 Metadata attributes_of(const Imf::Header& header) {
@@ -165,7 +153,7 @@ void write_exr(const std::string& path, const FilmImage& film, const Metadata& m
 }
 
 ExrImage read_exr(const std::string& path) {
-    const std::string bytes = read_bytes(path);
+    const std::string bytes = read_file(path);
     try {
         return decode(path, bytes);
     } catch (const std::exception& error) {

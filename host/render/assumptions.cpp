@@ -7,13 +7,12 @@
 #include <limits>
 
 #include "host/core/log.hpp"
-#include "host/scene/mesh_thickness.hpp"
-#include "host/scene/mesh_topology.hpp"
+#include "host/scene/mesh/mesh_thickness.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
 
 namespace stokes {
 namespace {
 
-constexpr int first_emission_nm = 300, last_emission_nm = 830;
 constexpr double opaque_mean_free_paths = 3.0;
 constexpr double largest_relative_curvature = 1.0;
 
@@ -105,7 +104,7 @@ std::vector<std::string> model_remarks(const Scene& scene) {
     std::vector<std::string> lines;
     if (scene.render.transport != Transport::paper) return lines;
     for (const Fluorophore& fluorophore : scene.fluorophores) {
-        const double gain = fluorophore.conversion * fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
+        const double gain = fluorophore.conversion * fluorophore.emission.sum_1nm();
         if (gain > 1.0)
             lines.push_back(fmt::format(
                 "{}: fluorophores.{}: emits up to {:.3g} times what it takes up (conversion_per_nm times the "
@@ -132,8 +131,7 @@ std::vector<std::string> failed_assumptions(const Scene& scene) {
         const std::string failed = failure(scene, static_cast<int>(i), scene.media[static_cast<std::size_t>(*medium)]);
         if (failed.empty()) continue;
         lines.push_back(fmt::format("{}: materials.{}: {}; transport \"{}\" takes it for a half-space", scene.file,
-                                    material.name, failed,
-                                    transport_words[static_cast<std::size_t>(scene.render.transport)]));
+                                    material.name, failed, word_of(scene.render.transport)));
     }
     return lines;
 }

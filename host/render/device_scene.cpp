@@ -7,7 +7,7 @@
 #include "host/render/device_materials.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
-#include "host/scene/mesh_topology.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
 
 namespace stokes {
 

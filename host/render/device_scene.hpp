@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/device/device.hpp"
+#include "host/device/kernel.hpp"
 #include "host/render/device_textures.hpp"
 #include "host/render/ray_casting.hpp"
 #include "host/scene/scene.hpp"

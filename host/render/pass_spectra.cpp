@@ -13,7 +13,6 @@ namespace stokes {
 namespace {
 
 // Over which the emission is normalised [nm].
-constexpr int first_emission_nm = 300, last_emission_nm = 830;
 
 Flux16 sampled(const Spectrum& spectrum, const WavelengthSet& set) {
     Flux16 result;
@@ -130,7 +129,7 @@ std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluor
                                                         const PassWavelengths& wavelengths) {
     const WavelengthSet& set = wavelengths.set;
     std::array<Flux16, STOKES_WAVELENGTHS> rows{};
-    const double sum = fluorophore.emission.sum_1nm(first_emission_nm, last_emission_nm);
+    const double sum = fluorophore.emission.sum_1nm();
     for (std::size_t ex = 0; ex < set.size(); ++ex)
         for (std::size_t em = 0; em < set.size(); ++em) {
             if (set[em] <= set[ex]) continue;

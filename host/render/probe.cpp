@@ -22,7 +22,7 @@ void check(const ProbeMaterial& material, const ProbeSettings& s) {
     const auto expect = [](bool good, const char* what) {
         if (!good) throw InputError(fmt::format("probe: expected {}", what));
     };
-    const auto covered = [](int lambda) { return lambda >= first_probe_lambda_nm && lambda <= last_probe_lambda_nm; };
+    const auto covered = [](int lambda) { return lambda >= first_lambda_nm && lambda <= last_lambda_nm; };
     expect(material.medium || !material.dyes.empty(), "a medium, a fluorophore or both");
     expect(s.angle_deg >= 0.0 && s.angle_deg <= 89.9, "an angle of incidence in [0, 89.9] deg");
     expect(s.photons >= least_probe_photons && s.photons <= 1000000000000, "photons in [64, 1e12]");
@@ -127,7 +127,7 @@ ProbeGrid HalfSpaceProbe::Bench::probe_grid(int lambda_ex_nm) const {
     if (fluoresces) std::copy_if(grid_nm.begin(), grid_nm.end(), std::back_inserter(grid.emitting), emits);
 
     const bool again = fluoresces && settings.transport == Transport::walk && !settings.first_collision_only;
-    for (int lambda = first_probe_lambda_nm; lambda <= last_probe_lambda_nm; ++lambda) {
+    for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const bool inert = !again || !emits(lambda) || grid.emitting.empty() || lambda > grid.emitting.back();
         if (lambda != lambda_ex_nm && inert && !std::binary_search(grid.emitting.begin(), grid.emitting.end(), lambda))
             grid.spare.push_back(lambda);
@@ -245,9 +245,9 @@ void read_means(const Layout& layout, const BatchMeans& means, ProbeResult& resu
 
 ProbeResult HalfSpaceProbe::measure(int lambda_ex_nm) {
     Bench& b = *bench_;
-    if (lambda_ex_nm < first_probe_lambda_nm || lambda_ex_nm > last_probe_lambda_nm)
-        throw InputError(fmt::format("probe: expected an excitation wavelength in [{}, {}] nm, got {}",
-                                     first_probe_lambda_nm, last_probe_lambda_nm, lambda_ex_nm));
+    if (lambda_ex_nm < first_lambda_nm || lambda_ex_nm > last_lambda_nm)
+        throw InputError(fmt::format("probe: expected an excitation wavelength in [{}, {}] nm, got {}", first_lambda_nm,
+                                     last_lambda_nm, lambda_ex_nm));
     b.scene.lights[0].flux = line_of(lambda_ex_nm);
     const ProbeGrid grid = b.probe_grid(lambda_ex_nm);
     ProbeResult result;

@@ -37,7 +37,7 @@ struct ProbeSettings {
     double angle_deg = 0.0;             // of incidence, in [0, 89.9]
     std::int64_t photons = 1000000;     // for each set of sixteen wavelengths, in [least_probe_photons, 1e12]
     std::uint32_t seed = 1;
-    int lambda_min_nm = 300, lambda_max_nm = 780;  // in [300, 830]
+    int lambda_min_nm = 300, lambda_max_nm = 780;  // in [first_lambda_nm, last_lambda_nm]
     int step_nm = 5;                               // in [1, 50]
     int bins = 40;                                 // of distance, in [2, 10000]
     std::optional<double> r_max_mm;                // end of the last of them, in [1e-9, 1e12]; none: from the material
@@ -86,8 +86,8 @@ class HalfSpaceProbe {
     // The grid lambda_min_nm + n step_nm.
     const std::vector<int>& grid_nm() const;
 
-    // A measurement with light of lambda_ex_nm, in [300, 830]; depends on material, settings and lambda_ex_nm
-    // alone. InputError when there are too few wavelengths for sets of sixteen (probe_sets).
+    // A measurement with light of lambda_ex_nm, in [first_lambda_nm, last_lambda_nm]; depends on material, settings and
+    // lambda_ex_nm alone. InputError when there are too few wavelengths for sets of sixteen (probe_sets).
     ProbeResult measure(int lambda_ex_nm);
 
   private:

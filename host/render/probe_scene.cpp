@@ -41,7 +41,7 @@ Mesh sheet(double half_inner_mm, double half_outer_mm) {
 FreePaths mean_free_paths(const ProbeMaterial& material) {
     if (!material.medium) return {};
     FreePaths result{std::numeric_limits<double>::infinity(), 0.0};
-    for (int lambda = first_probe_lambda_nm; lambda <= last_probe_lambda_nm; ++lambda) {
+    for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double mfp_mm = 1.0 / (material.medium->sigma_s.at(lambda) + material.medium->sigma_a.at(lambda));
         result.shortest_mm = std::min(result.shortest_mm, mfp_mm);
         result.longest_mm = std::max(result.longest_mm, mfp_mm);
@@ -60,8 +60,8 @@ Scene probe_scene(const ProbeMaterial& source, const ProbeSettings& settings) {
     scene.render.first_collision_only = settings.first_collision_only;
     scene.render.seed = settings.seed;
     scene.render.wavelengths = Wavelengths::uniform;  // not drawn: probe_sets() has them
-    scene.render.lambda_min_nm = first_probe_lambda_nm;
-    scene.render.lambda_max_nm = last_probe_lambda_nm;
+    scene.render.lambda_min_nm = first_lambda_nm;
+    scene.render.lambda_max_nm = last_lambda_nm;
     TranslucentMaterial material;
     if (source.medium) {
         scene.media = {*source.medium};
@@ -89,7 +89,7 @@ Scene probe_scene(const ProbeMaterial& source, const ProbeSettings& settings) {
     DiskBeam beam;
     beam.direction = {std::sin(angle), -std::cos(angle), 0.0};
     beam.position_mm = -0.1 * inner_mm * beam.direction;
-    scene.lights = {{"beam", line_of(first_probe_lambda_nm), beam}};
+    scene.lights = {{"beam", line_of(first_lambda_nm), beam}};
     return scene;
 }
 

@@ -6,10 +6,7 @@
 
 namespace stokes {
 
-// Where a beam may be, and where media are defined.
-inline constexpr int first_probe_lambda_nm = 300, last_probe_lambda_nm = 830;
-
-// Of a material's medium, between those wavelengths; 1 mm without a medium.
+// Of a material's medium, from first_lambda_nm to last_lambda_nm; 1 mm without a medium.
 struct FreePaths {
     double shortest_mm = 1.0, longest_mm = 1.0;
 };
@@ -19,7 +16,7 @@ FreePaths mean_free_paths(const ProbeMaterial& material);
 Spectrum line_of(int lambda_nm);
 
 // A sheet in the plane y = 0, facing up, of one body, and a beam that enters it at the origin, coming along
-// +x, of 1 W at first_probe_lambda_nm.
+// +x, of 1 W at first_lambda_nm.
 Scene probe_scene(const ProbeMaterial& material, const ProbeSettings& settings);
 
 }  // namespace stokes

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "host/core/error.hpp"
-#include "host/scene/mesh.hpp"
+#include "host/scene/mesh/mesh.hpp"
 
 namespace stokes {
 

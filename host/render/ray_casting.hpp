@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/device/kernel.hpp"
-#include "host/scene/bvh_builder.hpp"
+#include "host/scene/bvh/bvh_builder.hpp"
 #include "kernels/shared/bvh.h"
 #include "kernels/shared/ray.h"
 

@@ -72,17 +72,17 @@ Renderer::Renderer(const Device& device, const Scene& scene)
 // depend on how the scene is sampled. Local radii relate to it, whatever the scene's, but are those of the photons of
 // its passes.
 void Renderer::set_up_passes() {
-    const RenderSettings& render = scene_.render;
-    const bool local = chosen_radii(render) == Radii::local;
+    const ResolvedSettings render = resolved(scene_.render);
+    const bool local = render.radii == Radii::local;
     double found_mm = 0.0;
     if (!render.radius_mm || local) {
         make_trial_photons(true);
         found_mm = find_first_radius();
     }
     first_radius_mm_ = render.radius_mm.value_or(found_mm);
-    if (chosen_emission(render) == Emission::stratified)
+    if (render.emission == Emission::stratified)
         photon_pass_.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
-    if (chosen_emission(render) == Emission::aimed) {
+    if (render.emission == Emission::aimed) {
         try {
             photon_pass_.inputs().set_emission(aimed_cells());
         } catch (const InputError& error) {  // no memory for the trials

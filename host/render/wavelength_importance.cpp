@@ -119,7 +119,7 @@ Values wavelength_importance(const Scene& scene) {
 
 std::optional<StratifiedWavelengths> stratified_wavelengths(const Scene& scene) {
     const RenderSettings& render = scene.render;
-    if (chosen_wavelengths(render) == Wavelengths::uniform ||
+    if (resolved(render).wavelengths == Wavelengths::uniform ||
         render.lambda_max_nm - render.lambda_min_nm + 1 <= STOKES_WAVELENGTHS)
         return std::nullopt;
     return StratifiedWavelengths(render.lambda_min_nm, wavelength_importance(scene));

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "host/core/spectrum.hpp"
-#include "host/scene/picture.hpp"
+#include "host/scene/readers/picture.hpp"
+#include "host/scene/settings/render_settings.hpp"
 
 namespace stokes {
 
@@ -35,105 +36,6 @@ struct Film {
     int height = 512;                   // pixels
     std::optional<double> exposure_ev;  // of the PNG; none: automatic
 };
-
-// Which subsurface transport the scene's translucent materials use: PHYSICS sections 3, 4 and 5.
-enum class Transport { paper, conserving, walk };
-// As scene files and the command line spell them, in the order of Transport.
-inline const std::vector<std::string> transport_words = {"paper", "conserving", "walk"};
-
-// How a pass draws its wavelengths: PHYSICS section 2. As scene files and the command line spell them, in order.
-enum class Wavelengths { uniform, importance };
-inline const std::vector<std::string> wavelengths_words = {"uniform", "importance"};
-
-// Which light is stored where a photon enters a translucent material: that of the branch that was drawn, fluorescence
-// or elastic scattering, or that of both. As scene files and the command line spell them, in order.
-enum class Branches { roulette, both };
-inline const std::vector<std::string> branches_words = {"roulette", "both"};
-
-// Where photons start: anywhere on the lights at random, evenly spread over them, or evenly and most where the camera
-// sees their light. As scene files and the command line spell them, in order.
-enum class Emission { random, stratified, aimed };
-inline const std::vector<std::string> emission_words = {"random", "stratified", "aimed"};
-
-// Where the light comes from that falls straight from the lights onto diffuse surfaces: from photons, or by shadow rays
-// from what the camera sees. As scene files and the command line spell them, in order.
-enum class Direct { photons, rays };
-inline const std::vector<std::string> direct_words = {"photons", "rays"};
-
-// Model `paper`: how far from its entry light leaves is drawn as the paper has it, from the power table, or where more
-// of it leaves, from the table's square, with weights; the mean is the same. As scene files and the command line spell
-// them, in order.
-enum class Distances { table, importance };
-inline const std::vector<std::string> distances_words = {"table", "importance"};
-
-// The radius of the density estimate: one for the whole picture, or more where photons are few. As scene files and the
-// command line spell them, in order.
-enum class Radii { one, local };
-inline const std::vector<std::string> radii_words = {"one", "local"};
-
-// Which samplers a render has where it does not name them one by one: the plain ones, or those with the least noise.
-enum class Sampling { plain, best };
-inline const std::vector<std::string> sampling_words = {"plain", "best"};
-
-inline constexpr std::int64_t most_photons_per_pass = 0x10000000;
-inline constexpr int most_exits = 64;
-
-struct RenderSettings {
-    int passes = 64;
-    std::int64_t photons_per_pass = 262144;
-    double alpha = 2.0 / 3.0;
-    std::optional<double> radius_mm;  // first radius; none: derived from the scene
-    std::uint32_t seed = 1;
-    int lambda_min_nm = 300;  // inclusive
-    int lambda_max_nm = 780;  // inclusive
-    Transport transport = Transport::conserving;
-    bool tables = true;                 // paper: false: no power tables, every photon integrates eq. 3-5 itself
-    bool first_collision_only = false;  // walk: fluorophores take light up at its first collision only
-    Sampling sampling = Sampling::best;
-    std::optional<Wavelengths> wavelengths;  // none: by sampling and transport
-    std::optional<Branches> branches;        // none: by sampling and transport; void for walk
-    std::optional<Emission> emission;        // none: by sampling
-    std::optional<Direct> direct;            // none: by sampling
-    std::optional<Radii> radii;              // none: by sampling
-    std::optional<Distances> distances;      // paper, with tables; none: by sampling
-    std::optional<int> exits;                // conserving: exit points an entry and component; none: by sampling
-};
-
-// By importance, unless plain samplers are asked for, or the model `paper`, whose wavelengths are uniform.
-inline Wavelengths chosen_wavelengths(const RenderSettings& render) {
-    const bool plain = render.sampling == Sampling::plain || render.transport == Transport::paper;
-    return render.wavelengths.value_or(plain ? Wavelengths::uniform : Wavelengths::importance);
-}
-
-// Both with the model `conserving`, unless plain samplers are asked for.
-inline Branches chosen_branches(const RenderSettings& render) {
-    const bool plain = render.sampling == Sampling::plain || render.transport != Transport::conserving;
-    return render.branches.value_or(plain ? Branches::roulette : Branches::both);
-}
-
-// Aimed, unless plain samplers are asked for.
-inline Emission chosen_emission(const RenderSettings& render) {
-    return render.emission.value_or(render.sampling == Sampling::plain ? Emission::random : Emission::aimed);
-}
-
-// By rays, unless plain samplers are asked for.
-inline Direct chosen_direct(const RenderSettings& render) {
-    return render.direct.value_or(render.sampling == Sampling::plain ? Direct::photons : Direct::rays);
-}
-
-// By importance, unless plain samplers are asked for; `table` where no power tables are.
-inline Distances chosen_distances(const RenderSettings& render) {
-    if (render.transport != Transport::paper || !render.tables) return Distances::table;
-    return render.distances.value_or(render.sampling == Sampling::plain ? Distances::table : Distances::importance);
-}
-
-// One, unless others are asked for.
-inline Radii chosen_radii(const RenderSettings& render) { return render.radii.value_or(Radii::one); }
-
-// One but for the model `conserving`.
-inline int chosen_exits(const RenderSettings& render) {
-    return render.transport == Transport::conserving ? render.exits.value_or(1) : 1;
-}
 
 // sigma_s and sigma_a [1/mm] with the scene's scale factors already applied.
 struct Medium {

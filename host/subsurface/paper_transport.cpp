@@ -3,44 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "host/core/error.hpp"
+#include "host/subsurface/quadrature.hpp"
 
 namespace stokes {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kEulerGamma = 0.57721566490153286061;
 
 // Beyond exp(-kNegligible) of its maximum an integrand is left out.
 constexpr double kNegligible = 36.0;
-
-struct GaussLegendre {
-    static constexpr int kOrder = 24;
-    std::array<double, kOrder> node{}, weight{};  // on [0, 1]
-
-    GaussLegendre() {
-        for (int i = 0; i < kOrder; ++i) {
-            double x = std::cos(kPi * (i + 0.75) / (kOrder + 0.5)), slope = 0.0;
-            for (int iteration = 0; iteration < 100; ++iteration) {
-                double previous = 1.0, current = x;
-                for (int n = 2; n <= kOrder; ++n) {
-                    const double next = ((2 * n - 1) * x * current - (n - 1) * previous) / n;
-                    previous = current;
-                    current = next;
-                }
-                slope = kOrder * (x * current - previous) / (x * x - 1.0);
-                const double step = current / slope;
-                x -= step;
-                if (std::abs(step) < 1e-16) break;
-            }
-            node[i] = 0.5 * (1.0 - x);
-            weight[i] = 1.0 / ((1.0 - x * x) * slope * slope);
-        }
-    }
-};
 
 // exp(-z cosh x) cosh x, the integrand of K_1(z) and of its incomplete forms.
 double bessel_integrand(double z, double x) {
@@ -60,12 +34,12 @@ double bessel_k1(double z, double x_end) {
 }
 
 double incomplete_bessel_k1(double z, double x_end) {
-    static const GaussLegendre rule;
+    static const GaussLegendre rule(24);
     const int panels = static_cast<int>(std::ceil(x_end / 3.0));
     const double width = panels == 0 ? 0.0 : x_end / panels;
     double sum = 0.0;
     for (int panel = 0; panel < panels; ++panel)
-        for (int i = 0; i < GaussLegendre::kOrder; ++i)
+        for (std::size_t i = 0; i < rule.node.size(); ++i)
             sum += rule.weight[i] * bessel_integrand(z, (panel + rule.node[i]) * width);
     return sum * width;
 }
@@ -75,9 +49,9 @@ double incomplete_bessel_k1(double z, double x_end) {
 RefractionAngle RefractionAngle::from_degrees(double theta_deg) {
     // From the half complement h = (90 deg - theta) / 2: sin = 1 - 2 sin^2 h, cos = sin 2h, exact near 90
     // degrees.
-    const double half_complement = (90.0 - theta_deg) * kPi / 360.0;
+    const double half_complement = (90.0 - theta_deg) * M_PI / 360.0;
     const double s = std::sin(half_complement);
-    return {std::sin(theta_deg * kPi / 180.0), std::sin(2.0 * half_complement), 2.0 * s * s};
+    return {std::sin(theta_deg * M_PI / 180.0), std::sin(2.0 * half_complement), 2.0 * s * s};
 }
 
 // s(t) is the hypotenuse over b = r cos(theta) and u = t - r sin(theta); with u = b sinh(x) the integral is
@@ -99,7 +73,7 @@ double single_power(double sigma_s, double sigma_t, double r_mm, const Refractio
     const double direct = std::exp(-sigma_t * r_mm) / (2.0 * sigma_t);
     const double beyond = 0.5 * r_mm * (1.0 + theta.sine) * std::exp(-sigma_t * r_mm * theta.sine) *
                           exponential_integral_2(sigma_t * r_mm * theta.one_minus_sine);
-    return sigma_s / (4.0 * kPi) * (direct + beyond);
+    return sigma_s / (4.0 * M_PI) * (direct + beyond);
 }
 
 double multiple_power(double sigma_a, double sigma_t, double dipole_a, double r_mm) {
@@ -112,7 +86,7 @@ double multiple_power(double sigma_a, double sigma_t, double dipole_a, double r_
     // The difference of the two sources, written without cancellation for r far beyond both depths.
     const double further = (z_virtual - z_real) * (z_virtual + z_real) / (d_virtual + d_real);
     const double kept = -std::expm1(-(sigma_tr * further + std::log1p(further / d_real)));
-    return std::exp(-sigma_tr * d_real) / d_real * kept / (4.0 * kPi * diffusion);
+    return std::exp(-sigma_tr * d_real) / d_real * kept / (4.0 * M_PI * diffusion);
 }
 
 double dipole_boundary(double eta) {

@@ -6,9 +6,12 @@
 #include <map>
 #include <utility>
 
+#include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
+#include "host/core/json_text.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/subsurface/paper_transport.hpp"
+#include "host/subsurface/table_json.hpp"
 
 namespace stokes {
 namespace {
@@ -133,6 +136,20 @@ PowerTable make_multiple_table(const MediumSpectra& medium, const TableGrid& gri
         return multiple_power(sigma_a, sigma_s + sigma_a, dipole_a, r);
     });
     return table;
+}
+
+void write_power_table(const PowerTable& table, const std::string& path) {
+    const TableMedium& medium = table.medium;
+    nlohmann::ordered_json json = table_json(table.model, table.component);
+    json["medium"] = {{"name", medium.name},
+                      {"eta", medium.eta},
+                      {"dipole_eta", medium.dipole_eta},
+                      {"sigma_s", medium.sigma_s},
+                      {"sigma_a", medium.sigma_a}};
+    json["axes"] = axes_json(table.axes);
+    json["unit"] = table.unit;
+    json["values"] = table.values;
+    write_file_atomically(path, json_text(json, -1));
 }
 
 }  // namespace stokes

@@ -66,4 +66,8 @@ PowerTable make_fluorescence_table(const MediumSpectra& medium, const TableGrid&
 PowerTable make_single_table(const MediumSpectra& medium, const TableGrid& grid = {});
 PowerTable make_multiple_table(const MediumSpectra& medium, const TableGrid& grid = {});
 
+// Writes the table to path as JSON, format "photon-power-table" version 1, complete or not at all; numbers keep every
+// bit. Throws RunError when the file cannot be written.
+void write_power_table(const PowerTable& table, const std::string& path);
+
 }  // namespace stokes

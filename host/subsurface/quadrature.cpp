@@ -5,9 +5,8 @@
 namespace stokes {
 
 GaussLegendre::GaussLegendre(int order) : node(order), weight(order) {
-    constexpr double pi = 3.14159265358979323846;
     for (int i = 0; i < order; ++i) {
-        double x = std::cos(pi * (i + 0.75) / (order + 0.5)), slope = 0.0;
+        double x = std::cos(M_PI * (i + 0.75) / (order + 0.5)), slope = 0.0;
         for (int iteration = 0; iteration < 100; ++iteration) {
             double previous = 1.0, current = x;
             for (int n = 2; n <= order; ++n) {

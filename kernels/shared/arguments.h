@@ -25,11 +25,10 @@
 // The pass's constants, and spectra: rows of the pass's wavelengths as SpectraLayout has them. Bound by PassInputs.
 #define PASS_ARGUMENTS __global const PassConstants *pass, __global const float16 *spectra
 
-// What subsurface light is looked up in, as TableShape has it: table16 [entries] at the pass's wavelengths, mean_rows
-// and cumulative_rows [entries] of the distances. Bound by SubsurfaceTables.
-#define TABLE_ARGUMENTS                                                                                        \
-    __global const TableShape *table_shapes, __global const float16 *table16, __global const float *mean_rows, \
-        __global const float *cumulative_rows
+// What the distances of subsurface light are drawn from, as TableShape has it: mean_rows and cumulative_rows [entries].
+// Bound by the transport.
+#define TABLE_ARGUMENTS \
+    __global const TableShape *table_shapes, __global const float *mean_rows, __global const float *cumulative_rows
 
 // The state of each path [paths]: its next ray, its flux [W/nm] and its account. Bound by PhotonPaths.
 #define PATH_ARGUMENTS __global Ray *rays, __global float16 *flux, __global PathLedger *ledgers

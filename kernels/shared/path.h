@@ -9,8 +9,7 @@
 #define STOKES_FATE_ABSORBED 1u     // by a black surface, by roulette, or with no flux left
 #define STOKES_FATE_ESCAPED 2u      // left the scene
 #define STOKES_FATE_MISSED_EXIT 3u  // its exit point found no surface
-#define STOKES_FATE_MAP_FULL 4u     // no slot was left for its deposit
-#define STOKES_FATE_OVERFLOW 5u     // its flux grew beyond STOKES_FLUX_LIMIT times what it started with
+#define STOKES_FATE_OVERFLOW 4u     // its flux grew beyond STOKES_FLUX_LIMIT times what it started with
 #define STOKES_FATE_EVENT_LIMIT 5u  // the pass's limit of events was reached
 #define STOKES_FATE_COUNT 6u
 
@@ -50,7 +49,7 @@ typedef struct PathLedger {
     LightSum absorbed;     // by surfaces and media
     LightSum stokes_loss;  // taken up by a fluorophore and not re-emitted
     LightSum escaped;
-    LightSum dropped;   // cut off: missed exits, fluorescence without a slot, the limit of events, overflow
+    LightSum dropped;   // cut off: missed exits, the limit of events, overflow
     LightSum roulette;  // ended by Russian roulette minus what survivors were raised by, and what random weights add
                         // and take; mean zero
     LightSum created;   // model `paper`: made by power tables above one

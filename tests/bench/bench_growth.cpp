@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "host/render/renderer.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/bench/bench_scenes.hpp"
 #include "tests/bench/photon_stage.hpp"
 #include "tests/bench/stages.hpp"
@@ -126,7 +126,7 @@ Json grow_triangles(Setting& setting) {
         const Buffer<Hit> out(setting.device, "hits", n);
         Contest contest;
         contest.add("trace", [&] {
-            closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, in, out);
+            closest.launch(n, scene.arguments().add("n", n).add("rays", in).add("hits", out));
             setting.device.finish();
         });
         contest.run(setting.pick(1, 3, 5));

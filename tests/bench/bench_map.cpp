@@ -107,8 +107,8 @@ class MapBench {
         : setting_(setting),
           slots_(setting.pick(1u << 15, 1u << 20, 1u << 20)),
           edge_(setting.pick(64u, 512u, 512u)),
-          radius_mm_(static_cast<float>(
-              std::sqrt(found_per_query * sheet_mm * sheet_mm / (std::acos(-1.0) * slots_ * 7.0 / 8.0)))),
+          radius_mm_(
+              static_cast<float>(std::sqrt(found_per_query * sheet_mm * sheet_mm / (M_PI * slots_ * 7.0 / 8.0)))),
           photons_(make_photons(slots_, clustered, radius_mm_)),
           points_(make_points(edge_)),
           team_(setting.threads),
@@ -163,9 +163,16 @@ class MapBench {
     }
     void gather() {
         const auto count = static_cast<std::uint32_t>(points_.size());
-        gather_.launch(count, points_on_device_, count, std::uint32_t{STOKES_MAP_SURFACE}, 1.0f, hash_.grid(),
-                       hash_.cell_starts(), hash_.positions(), hash_.normals(), hash_.flux(), spectra_, textures_,
-                       pass_, film_);
+        gather_.launch(count, Arguments()
+                                  .add("gather_points", points_on_device_)
+                                  .add("count", count)
+                                  .add("map", std::uint32_t{STOKES_MAP_SURFACE})
+                                  .add("largest_factor", 1.0f)
+                                  .add("spectra", spectra_)
+                                  .add("texture_records", textures_)
+                                  .add("pass", pass_)
+                                  .add("film", film_, "float4")
+                                  .add(hash_.arguments()));
         setting_.device.finish();
     }
 

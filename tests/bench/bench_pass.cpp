@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "host/render/renderer.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/bench/photon_stage.hpp"
 #include "tests/bench/stages.hpp"
 
@@ -42,7 +42,7 @@ double seconds_in(const std::map<std::string, StageTime>& stages,
 
 Json photons_of(Setting& setting, Transport transport) {
     const auto photons = static_cast<std::uint32_t>(setting.pick(1 << 13, 1 << 18, 1 << 18));
-    const std::string& model = transport_words[static_cast<std::size_t>(transport)];
+    const std::string& model = word_of(transport);
     PhotonStage stage(setting.device, prisms(transport, 64, photons), photons);
     for (const std::uint32_t warm_up : {0u, 1u}) stage.make_pass(warm_up), stage.trace();
     setting.device.reset_stage_times();
@@ -92,7 +92,7 @@ Json bench_photons(Setting& setting) {
     Json json = Json::object();
     for (const Transport transport : {Transport::paper, Transport::conserving, Transport::walk})
         if (transport == Transport::paper || setting.amount == Amount::full)
-            json[transport_words[static_cast<std::size_t>(transport)]] = photons_of(setting, transport);
+            json[word_of(transport)] = photons_of(setting, transport);
     return json;
 }
 

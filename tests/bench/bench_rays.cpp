@@ -109,7 +109,7 @@ std::vector<Ray> camera_rays(const Device& device, const Camera& camera, int edg
     pass.seed = 1;
     const Buffer<PassConstants> constants(device, "pass", std::vector<PassConstants>{pass});
     const Buffer<Ray> rays(device, "camera rays", view.ray_count());
-    view.make_rays(constants, rays);
+    view.make_rays(Arguments("pass", constants), rays);
     return rays.download();
 }
 
@@ -239,12 +239,12 @@ class RayBench {
             portable_occluded(setting_.device, "occluded", n);
         const auto cast = [&](Caster& caster, const Buffer<Hit>& out, const Buffer<std::uint32_t>& out_any) {
             if (set.kind == Kind::any)
-                caster.any.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, out_any);
+                caster.any.launch(n, scene.arguments().add("n", n).add("rays", rays).add("occluded", out_any));
             else if (set.kind == Kind::coherent)
-                caster.camera.launch((n + caster.packet - 1) / caster.packet, n, scene.nodes, scene.blocks, scene.grid,
-                                     rays, out);
+                caster.camera.launch((n + caster.packet - 1) / caster.packet,
+                                     scene.arguments().add("n", n).add("rays", rays).add("hits", out));
             else
-                caster.closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, out);
+                caster.closest.launch(n, scene.arguments().add("n", n).add("rays", rays).add("hits", out));
             setting_.device.finish();
         };
         outcome.contest.add("ours", [&] { cast(*usual_, hits, occluded); });
@@ -262,8 +262,8 @@ class RayBench {
 #endif
         outcome.contest.run(setting_.pick(1, 3, 9));
         if (set.kind == Kind::any) {  // what lies on a segment must be what the nearest hit says
-            usual_->closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, hits);
-            portable_->closest.launch(n, n, scene.nodes, scene.blocks, scene.grid, rays, portable_hits);
+            usual_->closest.launch(n, scene.arguments().add("n", n).add("rays", rays).add("hits", hits));
+            portable_->closest.launch(n, scene.arguments().add("n", n).add("rays", rays).add("hits", portable_hits));
         }
         const std::vector<Hit> ours = hits.download(), others_hits = portable_hits.download();
         outcome.hits = check_hits(casting.triangles, set.rays, ours, reference_hits(others, team_, casting, set));

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "host/scene/mesh_reader.hpp"
+#include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/triangle_meshes.hpp"
 
 namespace stokes::bench {
@@ -34,7 +34,7 @@ void add_wire(std::vector<Triangle>& all, const glm::vec3& from, const glm::vec3
     const glm::vec3 away = std::fabs(axis.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
     const glm::vec3 s = glm::normalize(glm::cross(axis, away)), t = glm::cross(axis, s);
     const auto corner = [&](int i) {
-        const double angle = 2.0 * std::acos(-1.0) * (i % sides) / sides;
+        const double angle = 2.0 * M_PI * (i % sides) / sides;
         return radius_mm * (static_cast<float>(std::cos(angle)) * s + static_cast<float>(std::sin(angle)) * t);
     };
     for (int i = 0; i < sides; ++i)

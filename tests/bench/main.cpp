@@ -38,7 +38,7 @@ Json machine(const Setting& setting) {
               {"device", device.name},
               {"platform", device.platform},
               {"driver", device.driver},
-              {"ray_kernel", ray_shape_words[static_cast<std::size_t>(setting.device.ray_shape())]},
+              {"ray_kernel", word_of(setting.device.ray_shape())},
               {"opencl", device.version},
               {"load_at_start", load()}};
 #ifdef STOKES_WITH_EMBREE
@@ -61,9 +61,7 @@ struct Options {
 Json run(const Options& options, const std::string& own_program) {
     Setting setting;
     setting.device = Device::open(options.device, options.threads);
-    const auto shape = std::find(ray_shape_words.begin(), ray_shape_words.end(), options.ray_kernel);
-    if (shape != ray_shape_words.end())
-        setting.device.set_ray_shape(static_cast<RayShape>(shape - ray_shape_words.begin()));
+    if (const auto shape = value_of_word<RayShape>(options.ray_kernel)) setting.device.set_ray_shape(*shape);
     setting.threads = options.threads > 0 ? static_cast<unsigned>(options.threads)
                                           : std::max(1u, std::thread::hardware_concurrency());
     setting.amount = options.tiny ? Amount::tiny : options.quick ? Amount::quick : Amount::full;
@@ -97,7 +95,7 @@ int main(int argc, char** argv) {
         ->check(CLI::ExistingFile);
     app.add_option("--device", options.device, "platform:device, part of a name, cpu or gpu");
     app.add_option("--ray-kernel", options.ray_kernel, "How rays are traced; default: by the device")
-        ->check(CLI::IsMember(stokes::ray_shape_words));
+        ->check(CLI::IsMember(stokes::words_of<stokes::RayShape>));
     app.add_option("--threads", options.threads, "Threads of the device, of Embree and of the C++ twin; default: all")
         ->check(CLI::Range(1, 4096));
     app.add_flag("--quick", options.quick, "Smaller and fewer: within a minute");

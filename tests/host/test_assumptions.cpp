@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "host/render/assumptions.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/scene_reader.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/test_scenes.hpp"
@@ -23,23 +23,13 @@ Scene one_thing(const Mesh& mesh) {
     medium.sigma_a = {{599.0, 600.0, 601.0}, {0.01, 0.0025, 0.01}, Outside::hold};
     scene.media = {medium};
     scene.materials = {{"wax", TranslucentMaterial{0, {}, false}}};
-    scene.body_count = 1;
-    Shape shape;
-    shape.name = "thing";
-    shape.material = shape.body = 0;
-    shape.mesh = mesh;
-    scene.shapes = {shape};
+    add_shape(scene, "thing", 0, mesh);
     return scene;
 }
 
 using Lines = std::vector<std::string>;
 
 Lines failures_of(const Mesh& mesh) { return failed_assumptions(one_thing(mesh)); }
-
-Mesh inside_out(Mesh mesh) {
-    for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
-    return mesh;
-}
 
 }  // namespace
 
@@ -88,9 +78,9 @@ TEST_CASE("A ball fails when its radius is less than the diffuse length, and so 
           Lines{"s.json: materials.wax: shape \"thing\" is curved within a diffuse length: its mean radius of "
                 "curvature is 9 "
                 "mm, the diffuse length 9.42 mm at 600 nm; transport \"conserving\" takes it for a half-space"});
-    CHECK(failures_of(inside_out(make_sphere(9.0))).size() == 1);
+    CHECK(failures_of(turned_over(make_sphere(9.0))).size() == 1);
     CHECK(failures_of(make_sphere(9.6)).empty());
-    CHECK(failures_of(inside_out(make_sphere(9.6))).empty());
+    CHECK(failures_of(turned_over(make_sphere(9.6))).empty());
     // Thin as well as curved: one line.
     REQUIRE(failures_of(make_sphere(4.0)).size() == 1);
     CHECK(failures_of(make_sphere(4.0))[0].find("thinner") != std::string::npos);

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "host/core/error.hpp"
-#include "host/scene/bvh_builder.hpp"
+#include "host/scene/bvh/bvh_builder.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/triangle_meshes.hpp"
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "host/core/error.hpp"
+#include "host/core/srgb.hpp"
 #include "host/image/colour.hpp"
 #include "tests/support/catch.hpp"
 

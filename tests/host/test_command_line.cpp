@@ -102,7 +102,7 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
              {"render " + sphere_scene + " --distances table" + out,
               "--distances: expected transport \"paper\", got \"conserving\""},
              {"render " + sphere_scene + " --transport paper --no-tables --distances table" + out,
-              "--distances: expected power tables, got --no-tables"},
+              "--distances: expected power tables, got none"},
              {"render " + sphere_scene + " --transport paper --exits 2" + out,
               "--exits: expected transport \"conserving\", got \"paper\""},
              {"render " + sphere_scene + " --alpha nan" + out, "--alpha: expected a number"},
@@ -110,7 +110,7 @@ TEST_CASE("bad input is one line and exit code 2, and leaves no file", "[command
              {"render " + sphere_scene + " --exposure nan" + out, "--exposure: expected a number"},
              {"render " + sphere_scene + " --exposure inf" + out, "--exposure: expected a number"},
              {"render " + sphere_scene + " --max-memory nan" + out, "--max-memory: expected a number"},
-             {"render " + sphere_scene + " --photons 268435457" + out, "--photons: expected a number"},
+             {"render " + sphere_scene + " --photons 268435457" + out, "--photons: expected an integer"},
              {"render " + sphere_scene + " --seed -1" + out, "--seed"},
              {"render " + sphere_scene + " --png /dev/null", "/dev/null: cannot write: not a regular file"},
              {"render " + sphere_scene + " --stats " + folder.path() + "/x.png" + out, "another file for each output"},
@@ -210,9 +210,7 @@ TEST_CASE("a scene's crop is rendered, and the picture says which it is", "[comm
 TEST_CASE("a transport that there is not is bad input, in one line", "[command line]") {
     const Outcome outcome = run_stokes("render " + sphere_scene + " --png x.png --transport dipole");
     CHECK(outcome.code == 2);
-    CHECK(outcome.err ==
-          "stokes: --transport: expected paper, conserving, walk, got \"dipole\"; stokes --help lists what "
-          "there is\n");
+    CHECK(outcome.err == "stokes: --transport: expected \"paper\", \"conserving\" or \"walk\", got \"dipole\"\n");
 }
 
 TEST_CASE("walking through a thing with a hole is bad input", "[command line]") {

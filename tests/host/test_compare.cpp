@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "host/core/error.hpp"
+#include "host/core/srgb.hpp"
 #include "host/image/colour.hpp"
 #include "host/image/compare.hpp"
 #include "host/image/error_map.hpp"

@@ -1,39 +1,20 @@
 // Shapes of several materials: their parts make one closed surface.
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <tuple>
 
 #include "host/render/assumptions.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/mesh_thickness.hpp"
-#include "host/scene/mesh_topology.hpp"
-#include "host/scene/scene_reader.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/mesh_thickness.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
+#include "host/scene/mesh/shapes.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/triangle_meshes.hpp"
 
 using namespace stokes;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-using Place = std::tuple<float, float, float>;
-
-Place place_of(const glm::vec3& p) { return {p.x, p.y, p.z}; }
-
-// Every directed edge, by the exact places of its ends, once in all the meshes, and its reverse once.
-bool are_watertight(const std::vector<Mesh>& parts) {
-    std::map<std::pair<Place, Place>, int> edges;
-    for (const Mesh& mesh : parts)
-        for (const glm::uvec3& t : mesh.triangles)
-            for (int k = 0; k < 3; ++k)
-                ++edges[{place_of(mesh.positions_mm[t[k]]), place_of(mesh.positions_mm[t[(k + 1) % 3]])}];
-    for (const auto& [edge, count] : edges)
-        if (count != 1 || edges.count({edge.second, edge.first}) == 0) return false;
-    return !edges.empty();
-}
 
 std::vector<Mesh> meshes_of(const Scene& scene) {
     std::vector<Mesh> meshes;
@@ -86,14 +67,14 @@ TEST_CASE("The parts of sectors are one closed cylinder in equal shares, counter
         REQUIRE(parts.size() == static_cast<std::size_t>(sectors));
         CHECK(are_watertight(parts));
         const int sides = 40 + (sectors - 40 % sectors) % sectors;
-        const double side = 2 * 5 * std::sin(pi / sides), polygon = 0.5 * sides * 25 * std::sin(2 * pi / sides);
+        const double side = 2 * 5 * std::sin(M_PI / sides), polygon = 0.5 * sides * 25 * std::sin(2 * M_PI / sides);
         for (int k = 0; k < sectors; ++k) {
             const Mesh& mesh = parts[static_cast<std::size_t>(k)];
             CHECK(mesh_area_mm2(mesh) * sectors == Approx(2 * polygon + sides * side * 8));
             for (const glm::uvec3& t : mesh.triangles) {
                 const glm::vec3 middle =
                     (mesh.positions_mm[t.x] + mesh.positions_mm[t.y] + mesh.positions_mm[t.z]) / 3.0f;
-                const double from_start = std::fmod(std::atan2(-middle.z, middle.x) / (2 * pi) + 1.75, 1.0);
+                const double from_start = std::fmod(std::atan2(-middle.z, middle.x) / (2 * M_PI) + 1.75, 1.0);
                 CHECK(static_cast<int>(from_start * sectors) == k);
             }
         }

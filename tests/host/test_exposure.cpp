@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/core/srgb.hpp"
 #include "host/image/colour.hpp"
 #include "host/image/develop.hpp"
 #include "tests/support/catch.hpp"

@@ -1,28 +1,17 @@
-#include <cstdlib>
 #include <string>
 
 #include "host/subsurface/green_table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
 using Catch::Matchers::Contains;
 
 namespace {
 
-struct Outcome {
-    int code;
-    std::string out, err;
-};
-
-Outcome run_tables(const std::string& arguments) {
-    const TemporaryFolder log;
-    const std::string command = "\"" + stokes_program() + "\" tables " + arguments + " >\"" + log.file("out") +
-                                "\" 2>\"" + log.file("err") + "\"";
-    const int code = WEXITSTATUS(std::system(command.c_str()));
-    return {code, file_content(log.file("out")), file_content(log.file("err"))};
-}
+Outcome run_tables(const std::string& arguments) { return run_stokes("tables " + arguments); }
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 
 using namespace stokes;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -152,18 +153,21 @@ TEST_CASE("a written table reads back", "[green_table]") {
 TEST_CASE("bad table files are told apart", "[green_table]") {
     const TemporaryFolder folder;
     const std::string text = text_of(small_table(), folder);
-    CHECK(complaint(text, "\"conserving\"", "\"paper\"") == "table: model: expected \"conserving\"");
-    CHECK(complaint(text, "\"version\": 1", "\"version\": 2") == "table: version: expected 1");
-    CHECK(complaint(text, "\"eta\": 1.2", "\"eta\": 0.5") == "table: eta: expected a number of at least 1");
-    CHECK(complaint(text, "\"name\": \"z\"", "\"name\": \"depth\"") == "table: axes[1].name: expected \"z\"");
-    CHECK(complaint(text, "[0,0.003,", "[0,0.004,") == "table: axes[0].values[2]: expected logarithmic steps");
-    CHECK(complaint(text, "[0,0.003,", "[0.001,0.003,") == "table: axes[0].values[0]: expected 0");
-    CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": ["), Contains("table: u1: expected a list of 20 numbers"));
-    CHECK_THAT(complaint(text, "\"values\": [\n0,", "\"values\": [\n-1,"),
-               Contains("table: values[0]: expected a finite number"));
-    CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": [0.9,"), Contains("table: u1[0]: expected at most 1"));
-    CHECK_THAT(complaint(text, "\"u1\": [0,", "\"u1\": [0.2,"), Contains("table: values: expected an integral"));
-    CHECK_THAT(complaint(text, "]}\n", "\n"), Contains("not valid JSON"));
+    const auto check = [&](const std::string& piece, const std::string& by, const std::string& words) {
+        CHECK_THAT(complaint(text, piece, by), StartsWith("table:1: " + words));
+    };
+    check(R"("conserving")", R"("paper")", R"(model: expected "conserving", got "paper")");
+    check(R"("version":1)", R"("version":2)", "version: expected an integer in [1, 1]");
+    check(R"("eta":1.2)", R"("eta":0.5)", "eta: expected a number in [1, ");
+    check(R"("name":"z")", R"("name":"depth")", R"(axes[1].name: expected "z")");
+    check("[0.0,0.003", "[0.0,0.004", "axes[0].values[2]: expected logarithmic steps");
+    check("[0.0,0.003", "[0.0,0.0", "axes[0].values[1]: expected strictly increasing values");
+    check("[0.0,0.003", "[0.001,0.003", "axes[0].values[0]: expected 0");
+    check(R"("u1":[0.0,)", R"("u1":[)", "u1: expected an array of 20 numbers, got an array of 19");
+    check(R"("1/mfp","values":[0.0)", R"("1/mfp","values":[-1)", "values[0]: expected a number in [0, ");
+    check(R"("u1":[0.0)", R"("u1":[0.9)", "u1[0]: expected at most 1");
+    check(R"("u1":[0.0)", R"("u1":[0.2)", "values: expected an integral");
+    CHECK_THAT(complaint(text, "]}\n", ""), StartsWith("table:1: JSON syntax error"));
 
     const std::string path = folder.file("table.json.gz");
     const std::string whole = file_content(path);
@@ -173,7 +177,7 @@ TEST_CASE("bad table files are told apart", "[green_table]") {
     CHECK(input_error([&] { read_green_table(path); }) == path + ": not a whole gzip file");
     put_file(path, "");
     CHECK(input_error([&] { read_green_table(path); }) == path + ": not a whole gzip file");
-    CHECK_THAT(input_error([&] { read_green_table(folder.file("none")); }), Contains("cannot open"));
+    CHECK_THAT(input_error([&] { read_green_table(folder.file("none")); }), Contains("cannot read"));
 }
 
 TEST_CASE("text survives compression, and bombs are refused", "[gzip]") {

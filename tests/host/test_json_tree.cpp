@@ -1,5 +1,5 @@
-#include "host/scene/json_cursor.hpp"
-#include "host/scene/json_tree.hpp"
+#include "host/core/json_cursor.hpp"
+#include "host/core/json_tree.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 

@@ -16,12 +16,12 @@ std::size_t occurrences(const std::string& text, const std::string& word) {
     return count;
 }
 
-// The text of a RunError that building this file gives; empty when it builds.
+// The text of the error that building this file gives; empty when it builds.
 std::string build_error(const Device& device, const std::string& file) {
     try {
         Program(device, file);
         return "";
-    } catch (const RunError& error) {
+    } catch (const std::runtime_error& error) {
         return error.what();
     }
 }

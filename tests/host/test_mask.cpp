@@ -2,9 +2,9 @@
 #include <cmath>
 #include <random>
 
-#include "host/scene/mask.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/readers/mask.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/png_bytes.hpp"

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <random>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/mesh_reader.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/paths.hpp"

@@ -1,49 +1,30 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/triangle_meshes.hpp"
 
 using namespace stokes;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-// Every directed edge once, and its reverse once: closed, and wound the same way all over.
-bool is_watertight(const Mesh& mesh) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-    for (const glm::uvec3& t : mesh.triangles) {
-        for (int k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
-    }
-    for (const auto& [edge, count] : edges) {
-        if (count != 1 || edges.count({edge.second, edge.first}) == 0) return false;
-    }
-    return !edges.empty();
-}
-
-glm::dvec3 normal_of(const Mesh& mesh, const glm::uvec3& t) {
-    const glm::dvec3 a(mesh.positions_mm[t.x]);
-    return glm::cross(glm::dvec3(mesh.positions_mm[t.y]) - a, glm::dvec3(mesh.positions_mm[t.z]) - a);
-}
-
 // For convex shapes: every triangle faces away from the point inside.
 bool all_face_away_from(const Mesh& mesh, const glm::dvec3& inside) {
     for (const glm::uvec3& t : mesh.triangles) {
-        if (!(glm::dot(normal_of(mesh, t), glm::dvec3(mesh.positions_mm[t.x]) - inside) > 0.0)) return false;
+        if (!(glm::dot(area_vector_mm2(mesh, t), glm::dvec3(mesh.positions_mm[t.x]) - inside) > 0.0)) return false;
     }
     return true;
 }
 
-double polygon_area(int sides, double radius) { return 0.5 * sides * radius * radius * std::sin(2 * pi / sides); }
+double polygon_area(int sides, double radius) { return 0.5 * sides * radius * radius * std::sin(2 * M_PI / sides); }
 
 }  // namespace
 
 TEST_CASE("A box is closed, outward, and of exact volume, area and bounds") {
     const Mesh box = make_box({2, 3, 4});
-    CHECK(is_watertight(box));
+    CHECK(are_watertight({box}));
     CHECK(all_face_away_from(box, glm::dvec3(0)));
     CHECK(mesh_volume_mm3(box) == Approx(24));
     CHECK(mesh_area_mm2(box) == Approx(52));
@@ -55,14 +36,14 @@ TEST_CASE("A sphere is closed and outward, its vertices on the sphere, volume an
     for (const int segments : {4, 5, 16, default_segments}) {
         INFO(segments);
         const Mesh sphere = make_sphere(10, segments);
-        CHECK(is_watertight(sphere));
+        CHECK(are_watertight({sphere}));
         CHECK(all_face_away_from(sphere, glm::dvec3(0)));
         for (const glm::vec3& p : sphere.positions_mm) CHECK(glm::length(p) == Approx(10).epsilon(1e-6));
     }
     const Mesh sphere = make_sphere(10);
     CHECK(sphere.triangles.size() == 2 * 128 * 63);
-    const double volume = mesh_volume_mm3(sphere) / (4.0 / 3.0 * pi * 1000);
-    const double area = mesh_area_mm2(sphere) / (4 * pi * 100);
+    const double volume = mesh_volume_mm3(sphere) / (4.0 / 3.0 * M_PI * 1000);
+    const double area = mesh_area_mm2(sphere) / (4 * M_PI * 100);
     // The chord's sagitta is (angle/2)^2/2 of the radius: below 3e-4 here in each direction.
     CHECK((volume > 0.998 && volume < 1.0));
     CHECK((area > 0.9985 && area < 1.0));
@@ -72,13 +53,13 @@ TEST_CASE("Prisms and cylinders stand on y = 0, closed and outward, of the polyg
     for (const int sides : {3, 4, 6, 7, 128}) {
         INFO(sides);
         const Mesh prism = sides == 128 ? make_cylinder(5, 8) : make_prism(sides, 5, 8);
-        CHECK(is_watertight(prism));
+        CHECK(are_watertight({prism}));
         CHECK(all_face_away_from(prism, {0, 4, 0}));
         CHECK(mesh_bounds(prism).low_mm.y == 0.0);
         CHECK(mesh_bounds(prism).high_mm.y == 8.0);
         CHECK(glm::dvec3(prism.positions_mm[0]) == glm::dvec3(5, 0, 0));
         CHECK(mesh_volume_mm3(prism) == Approx(8 * polygon_area(sides, 5)));
-        const double side = 2 * 5 * std::sin(pi / sides);
+        const double side = 2 * 5 * std::sin(M_PI / sides);
         CHECK(mesh_area_mm2(prism) == Approx(2 * polygon_area(sides, 5) + sides * side * 8));
     }
 }
@@ -91,7 +72,7 @@ TEST_CASE("Rectangles and disks face up") {
     CHECK(mesh_area_mm2(disk) == Approx(polygon_area(12, 3)));
     for (const Mesh& mesh : {rectangle, disk}) {
         for (const glm::uvec3& t : mesh.triangles) {
-            const glm::dvec3 n = normal_of(mesh, t);
+            const glm::dvec3 n = area_vector_mm2(mesh, t);
             CHECK((n.y > 0 && n.x == 0 && n.z == 0));
         }
     }

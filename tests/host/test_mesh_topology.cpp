@@ -1,21 +1,20 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/mesh_reader.hpp"
-#include "host/scene/mesh_thickness.hpp"
-#include "host/scene/mesh_topology.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/mesh_thickness.hpp"
+#include "host/scene/mesh/mesh_topology.hpp"
+#include "host/scene/mesh/shapes.hpp"
+#include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
 using Catch::Matchers::Contains;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 // Turned and moved so that no coordinate is round.
 glm::dmat4 askew() {
@@ -25,15 +24,6 @@ glm::dmat4 askew() {
 
 Mesh moved(Mesh mesh, const glm::dmat4& transform) {
     transform_mesh(mesh, transform);
-    return mesh;
-}
-
-Mesh lifted(Mesh mesh, const glm::dvec3& by_mm) {
-    return moved(std::move(mesh), glm::translate(glm::dmat4(1.0), by_mm));
-}
-
-Mesh inside_out(Mesh mesh) {
-    for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
     return mesh;
 }
 
@@ -52,15 +42,9 @@ Mesh unwelded(const Mesh& mesh) {
 Scene scene_of(const std::vector<Mesh>& meshes) {
     Scene scene;
     scene.file = "s.json";
-    scene.body_count = 1;
     scene.materials = {{"wax", TranslucentMaterial{0, {}, false}}};
-    for (const Mesh& mesh : meshes) {
-        Shape shape;
-        shape.name = "thing " + std::to_string(scene.shapes.size());
-        shape.material = shape.body = 0;
-        shape.mesh = mesh;
-        scene.shapes.push_back(shape);
-    }
+    for (const Mesh& mesh : meshes) add_shape(scene, "thing " + std::to_string(scene.shapes.size()), 0, mesh).body = 0;
+    scene.body_count = 1;
     return scene;
 }
 
@@ -76,28 +60,28 @@ TEST_CASE("A box is closed; its mean curvature is a quarter of pi times its twel
     CHECK(box.rim_edges == 0);
     CHECK(box.area_mm2 == Approx(52).epsilon(1e-5));
     CHECK(box.volume_mm3 == Approx(24).epsilon(1e-5));
-    CHECK(box.mean_curvature_mm == Approx(4 * (2 + 3 + 4) * pi / 4).epsilon(1e-5));  // 90 degrees / 2 each
+    CHECK(box.mean_curvature_mm == Approx(4 * (2 + 3 + 4) * M_PI / 4).epsilon(1e-5));  // 90 degrees / 2 each
 }
 
 TEST_CASE("The mean curvature of a ball tends to 4 pi R, of a cylinder to pi h + pi^2 R") {
-    CHECK(topology_of({make_sphere(10.0, 256)}).mean_curvature_mm == Approx(4 * pi * 10.0).epsilon(1e-3));
+    CHECK(topology_of({make_sphere(10.0, 256)}).mean_curvature_mm == Approx(4 * M_PI * 10.0).epsilon(1e-3));
     // The side: h 2 pi R / (2 R); the two rims: 2 pi R each, bent by 90 degrees.
-    const double cylinder = pi * 7.0 + pi * pi * 5.0;
+    const double cylinder = M_PI * 7.0 + M_PI * M_PI * 5.0;
     CHECK(topology_of({make_cylinder(5.0, 7.0, 512)}).mean_curvature_mm == Approx(cylinder).epsilon(1e-4));
 }
 
 TEST_CASE("Inside out, volume and mean curvature change their signs") {
-    const BodyTopology ball = topology_of({inside_out(make_sphere(10.0, 256))});
+    const BodyTopology ball = topology_of({turned_over(make_sphere(10.0, 256))});
     CHECK(ball.kind == BodyKind::closed);
-    CHECK(ball.volume_mm3 == Approx(-4.0 / 3.0 * pi * 1000.0).epsilon(1e-3));
-    CHECK(ball.mean_curvature_mm == Approx(-4 * pi * 10.0).epsilon(1e-3));
+    CHECK(ball.volume_mm3 == Approx(-4.0 / 3.0 * M_PI * 1000.0).epsilon(1e-3));
+    CHECK(ball.mean_curvature_mm == Approx(-4 * M_PI * 10.0).epsilon(1e-3));
 }
 
 TEST_CASE("A hollow ball is closed: volumes and areas add up, the cavity bends the other way") {
-    const BodyTopology shell = topology_of({make_sphere(10.0, 128), inside_out(make_sphere(9.0, 128))});
+    const BodyTopology shell = topology_of({make_sphere(10.0, 128), turned_over(make_sphere(9.0, 128))});
     CHECK(shell.kind == BodyKind::closed);
-    CHECK(shell.volume_mm3 == Approx(4.0 / 3.0 * pi * (1000.0 - 729.0)).epsilon(5e-3));
-    CHECK(shell.mean_curvature_mm == Approx(4 * pi * (10.0 - 9.0)).epsilon(1e-3));
+    CHECK(shell.volume_mm3 == Approx(4.0 / 3.0 * M_PI * (1000.0 - 729.0)).epsilon(5e-3));
+    CHECK(shell.mean_curvature_mm == Approx(4 * M_PI * (10.0 - 9.0)).epsilon(1e-3));
 }
 
 TEST_CASE("Vertices are welded by place, in one mesh and between meshes") {
@@ -109,7 +93,7 @@ TEST_CASE("Vertices are welded by place, in one mesh and between meshes") {
     const BodyTopology both = topology_of({lower, upper});
     CHECK(both.kind == BodyKind::closed);
     CHECK(both.volume_mm3 == Approx(24));
-    CHECK(both.mean_curvature_mm == Approx(9 * pi));
+    CHECK(both.mean_curvature_mm == Approx(9 * M_PI));
 }
 
 TEST_CASE("Zero and minus zero are one place, in meshes too large to be mended") {
@@ -132,8 +116,8 @@ TEST_CASE("Zero and minus zero are one place, in meshes too large to be mended")
 }
 
 TEST_CASE("A box of six separately placed rectangles is closed, though their corners differ by roundings") {
-    const glm::dmat4 x = glm::rotate(glm::dmat4(1.0), pi / 2, glm::dvec3(1, 0, 0));
-    const glm::dmat4 z = glm::rotate(glm::dmat4(1.0), pi / 2, glm::dvec3(0, 0, 1));
+    const glm::dmat4 x = glm::rotate(glm::dmat4(1.0), M_PI / 2, glm::dvec3(1, 0, 0));
+    const glm::dmat4 z = glm::rotate(glm::dmat4(1.0), M_PI / 2, glm::dvec3(0, 0, 1));
     const glm::dmat4 side = glm::translate(glm::dmat4(1.0), glm::dvec3(0, 1.1, 0));
     std::vector<Mesh> faces;
     for (const glm::dmat4& turn : {glm::dmat4(1.0), x, x * x, x * x * x, z, z * z * z})
@@ -141,7 +125,7 @@ TEST_CASE("A box of six separately placed rectangles is closed, though their cor
     const BodyTopology box = topology_of(faces);
     CHECK(box.kind == BodyKind::closed);
     CHECK(box.volume_mm3 == Approx(2.2 * 2.2 * 2.2).epsilon(1e-5));
-    CHECK(box.mean_curvature_mm == Approx(3 * pi * 2.2).epsilon(1e-5));
+    CHECK(box.mean_curvature_mm == Approx(3 * M_PI * 2.2).epsilon(1e-5));
     faces.pop_back();
     const BodyTopology five = topology_of(faces);
     CHECK(five.kind == BodyKind::open);
@@ -158,7 +142,7 @@ TEST_CASE("A gap without width, where a triangle without height was dropped, lea
     box.triangles.push_back({middle, t.y, t.z});
     const BodyTopology topology = topology_of({box});
     CHECK(topology.kind == BodyKind::closed);
-    CHECK(topology.mean_curvature_mm == Approx(9 * pi).epsilon(1e-5));
+    CHECK(topology.mean_curvature_mm == Approx(9 * M_PI).epsilon(1e-5));
     box.positions_mm.back() += glm::vec3(0.0F, 0.01F, 0.0F);
     CHECK(topology_of({box}).kind == BodyKind::open);
 }
@@ -166,9 +150,9 @@ TEST_CASE("A gap without width, where a triangle without height was dropped, lea
 TEST_CASE("Boxes that touch along an edge or a face are closed, each with its own edges") {
     const Mesh box = make_box({2, 2, 2});
     for (const glm::dvec3& by : {glm::dvec3(2, 2, 0), glm::dvec3(2, 0, 0)}) {
-        const BodyTopology both = topology_of({box, lifted(box, by)});
+        const BodyTopology both = topology_of({box, moved(box, by)});
         CHECK(both.kind == BodyKind::closed);
-        CHECK(both.mean_curvature_mm == Approx(2 * 6 * pi));
+        CHECK(both.mean_curvature_mm == Approx(2 * 6 * M_PI));
     }
 }
 
@@ -181,7 +165,7 @@ TEST_CASE("Triangles without area are ignored") {
 }
 
 TEST_CASE("A triangle too few or the wrong way round opens a mesh, and the place is told") {
-    Mesh box = lifted(make_box({2, 2, 2}), {10, 0, 0});
+    Mesh box = moved(make_box({2, 2, 2}), {10, 0, 0});
     box.triangles.erase(box.triangles.begin() + 2);  // of +x: 1, 3, 7
     const BodyTopology hole = topology_of({box});
     CHECK(hole.kind == BodyKind::open);
@@ -199,15 +183,15 @@ TEST_CASE("Sheets in one plane that face one way are flat, anywhere and however 
     CHECK(topology_of(
               {moved(make_rectangle(4, 6), glm::translate(glm::dmat4(1.0), glm::dvec3(9000, 7000, 100)) * askew())})
               .kind == BodyKind::flat);
-    const BodyTopology two = topology_of({make_rectangle(4, 6), lifted(make_disk(1.0), {10, 0, 0})});
+    const BodyTopology two = topology_of({make_rectangle(4, 6), moved(make_disk(1.0), {10, 0, 0})});
     CHECK(two.kind == BodyKind::flat);
     CHECK(two.area_mm2 == Approx(24 + mesh_area_mm2(make_disk(1.0))));
     CHECK(two.mean_curvature_mm == 0.0);
 }
 
 TEST_CASE("Steps, bends and sheets that face both ways are not flat") {
-    CHECK(topology_of({make_rectangle(4, 6), lifted(make_rectangle(4, 6), {9, 0.01, 0})}).kind == BodyKind::open);
-    CHECK(topology_of({make_rectangle(4, 6), lifted(inside_out(make_rectangle(1, 1)), {9, 0, 0})}).kind ==
+    CHECK(topology_of({make_rectangle(4, 6), moved(make_rectangle(4, 6), {9, 0.01, 0})}).kind == BodyKind::open);
+    CHECK(topology_of({make_rectangle(4, 6), moved(turned_over(make_rectangle(1, 1)), {9, 0, 0})}).kind ==
           BodyKind::open);
     Mesh bent = make_rectangle(4, 6);
     bent.positions_mm[2].y = 0.01F;
@@ -233,16 +217,16 @@ TEST_CASE("Thickness: of a sheet its own, of a ball and a rod the diameter, of a
     CHECK(thickness_of({moved(make_box({40, 3, 50}), askew())}) == Approx(3).epsilon(1e-5));
     CHECK(thickness_of({moved(make_sphere(10.0), askew())}) == Approx(20).epsilon(2e-3));
     CHECK(thickness_of({moved(make_cylinder(2.0, 80.0, 128), askew())}) == Approx(4).epsilon(2e-3));
-    CHECK(thickness_of({make_sphere(10.0), inside_out(make_sphere(9.0))}) == Approx(1).epsilon(0.05));
+    CHECK(thickness_of({make_sphere(10.0), turned_over(make_sphere(9.0))}) == Approx(1).epsilon(0.05));
     CHECK(thickness_of({make_box({7, 7, 7})}) == Approx(7));
     const Mesh sheet = make_rectangle(4, 6);
-    CHECK(thickness_of({sheet, inside_out(sheet)}) == Approx(0).margin(1e-5));
+    CHECK(thickness_of({sheet, turned_over(sheet)}) == Approx(0).margin(1e-5));
 }
 
 TEST_CASE("Thickness: without limit where there is no other side") {
     CHECK(std::isinf(thickness_of({make_rectangle(4, 6)})));
-    CHECK(std::isinf(thickness_of({inside_out(make_sphere(10.0))})));
-    CHECK(thickness_of({make_rectangle(4, 6), lifted(inside_out(make_rectangle(4, 6)), {0, -2, 0})}) == Approx(2));
+    CHECK(std::isinf(thickness_of({turned_over(make_sphere(10.0))})));
+    CHECK(thickness_of({make_rectangle(4, 6), moved(turned_over(make_rectangle(4, 6)), {0, -2, 0})}) == Approx(2));
     CHECK(std::isinf(thickness_of({})));
 }
 
@@ -259,8 +243,8 @@ TEST_CASE("Walking needs closed or flat bodies") {
     box.triangles.resize(2);  // -x
     box.triangles.push_back({1, 3, 7});
     CHECK_THAT(error({box}), Contains(expects + "7 edges without a neighbour, one at ("));
-    CHECK(error({inside_out(make_sphere(3.0))}) == expects + "one that faces inward");
-    CHECK(error({make_rectangle(1, 2), inside_out(make_rectangle(1, 2))}) == expects + "one without a volume");
+    CHECK(error({turned_over(make_sphere(3.0))}) == expects + "one that faces inward");
+    CHECK(error({make_rectangle(1, 2), turned_over(make_rectangle(1, 2))}) == expects + "one without a volume");
 }
 
 TEST_CASE("Walking asks nothing of bodies without subsurface light") {

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <random>
 
-#include "host/scene/picture.hpp"
+#include "host/scene/readers/picture.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/png_bytes.hpp"

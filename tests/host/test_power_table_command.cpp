@@ -1,21 +1,19 @@
-#include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "host/subsurface/power_table_json.hpp"
+#include "host/subsurface/power_table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
 using Catch::Matchers::Contains;
 
 namespace {
 
-// Runs `stokes tables SCENE -o FOLDER`; its standard output and error go to files in the log folder.
-int run_tables(const std::string& scene, const std::string& folder, const TemporaryFolder& log) {
-    const std::string command = "\"" + stokes_program() + "\" tables \"" + scene + "\" -o \"" + folder + "\" >\"" +
-                                log.file("out") + "\" 2>\"" + log.file("err") + "\"";
-    return WEXITSTATUS(std::system(command.c_str()));
+Outcome run_tables(const std::string& scene, const std::string& folder) {
+    return run_stokes("tables \"" + scene + "\" -o \"" + folder + "\"");
 }
 
 const std::string camera = R"({"format": "stokes-scene", "version": 1,
@@ -26,43 +24,45 @@ const std::string lamp_and_box = R"("lights": [{"type": "disk", "center_mm": [0,
 }  // namespace
 
 TEST_CASE("stokes tables writes the three tables of each translucent material", "[power_table_command]") {
-    const TemporaryFolder work, log;
+    const TemporaryFolder work;
     put_file(work.file("jelly.json"),
              camera +
                  R"("media": {"gel": {"sigma_s_per_mm": 0.8, "sigma_a_per_mm": 0.1, "eta": 1.4, "dipole_eta": 1.4}},
                "materials": {"jelly": {"type": "translucent", "medium": "gel"}},)" +
                  lamp_and_box);
     const std::string folder = work.file("new/tables");
-    const int code = run_tables(work.file("jelly.json"), folder, log);
-    CAPTURE(file_content(log.file("err")));
-    REQUIRE(code == 0);
+    const Outcome run = run_tables(work.file("jelly.json"), folder);
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
     const MediumSpectra gel{"gel", Spectrum::constant(0.8), Spectrum::constant(0.1), 1.4, 1.4};
     for (const PowerTable& expected :
          {make_fluorescence_table(gel), make_single_table(gel), make_multiple_table(gel)}) {
         const std::string path = folder + "/jelly." + expected.component + ".json";
-        CHECK_THAT(file_content(log.file("out")), Contains(path + "\n"));
-        const PowerTable written = read_power_table(path);
-        CHECK(written.component == expected.component);
-        CHECK(written.medium.name == "gel");
-        CHECK(written.medium.dipole_eta == 1.4);
-        CHECK((written.values == expected.values));
+        CHECK_THAT(run.out, Contains(path + "\n"));
+        const auto written = nlohmann::json::parse(file_content(path));
+        CHECK(written["component"] == expected.component);
+        CHECK(written["medium"]["name"] == "gel");
+        CHECK(written["medium"]["dipole_eta"] == 1.4);
+        CHECK((written["values"].get<std::vector<double>>() == expected.values));
     }
 }
 
 TEST_CASE("stokes tables ends with 2 for scenes it cannot use and 1 for folders it cannot make",
           "[power_table_command]") {
-    const TemporaryFolder work, log;
+    const TemporaryFolder work;
     put_file(work.file("plain.json"), camera + R"("materials": {"jelly": {"type": "black"}},)" + lamp_and_box);
-    CHECK(run_tables(work.file("plain.json"), work.file("t"), log) == 2);
-    CHECK_THAT(file_content(log.file("err")), Contains("no translucent material"));
-    CHECK(run_tables(work.file("none.json"), work.file("t"), log) == 2);
+    const Outcome plain = run_tables(work.file("plain.json"), work.file("t"));
+    CHECK(plain.code == 2);
+    CHECK_THAT(plain.err, Contains("no translucent material"));
+    CHECK(run_tables(work.file("none.json"), work.file("t")).code == 2);
 
     put_file(work.file("clear.json"), camera +
                                           R"("media": {"void": {"sigma_s_per_mm": 0, "sigma_a_per_mm": 0, "eta": 1.4}},
                "materials": {"jelly": {"type": "translucent", "medium": "void"}},)" +
                                           lamp_and_box);
-    CHECK(run_tables(work.file("clear.json"), work.file("t"), log) == 2);
-    CHECK_THAT(file_content(log.file("err")), Contains("void"));
+    const Outcome clear = run_tables(work.file("clear.json"), work.file("t"));
+    CHECK(clear.code == 2);
+    CHECK_THAT(clear.err, Contains("void"));
     CHECK(work.names() == std::vector<std::string>{"clear.json", "plain.json"});
 
     put_file(work.file("jelly.json"),
@@ -70,5 +70,5 @@ TEST_CASE("stokes tables ends with 2 for scenes it cannot use and 1 for folders 
                "materials": {"jelly": {"type": "translucent", "medium": "gel"}},)" +
                  lamp_and_box);
     put_file(work.file("t"), "a file");
-    CHECK(run_tables(work.file("jelly.json"), work.file("t"), log) == 1);
+    CHECK(run_tables(work.file("jelly.json"), work.file("t")).code == 1);
 }

@@ -1,7 +1,7 @@
 #include <random>
 
 #include "host/core/media_limits.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "host/subsurface/escape.hpp"
 #include "host/subsurface/paper_transport.hpp"
 #include "tests/support/catch.hpp"
@@ -103,7 +103,8 @@ TEST_CASE("Bad scenes: render, film and camera") {
         {"\"seed\": 9", "\"sampling\": 1", ":3: render.sampling: expected \"plain\" or \"best\", got 1"},
         {"\"width\": 8", "\"width\": 4294967296", ":4: film.width: expected an integer in [1, 16384]"},
         {"\"width\": 8", "\"width\": \"8\"", ":4: film.width: expected an integer in [1, 16384], got \"8\""},
-        {"\"width\": 8", "\"exposure_ev\": \"on\"", ":4: film.exposure_ev: expected \"auto\", got \"on\""},
+        {"\"width\": 8", "\"exposure_ev\": \"on\"",
+         ":4: film.exposure_ev: expected a number in [-100, 100] or \"auto\", got \"on\""},
         {"\"width\": 8", "\"exposure_ev\": 1e999", ":4: number out of range: 1e999"},
         {"\"target_mm\": [0, 0, 0]", "\"target_mm\": [0, 0]", ":5: camera.target_mm: expected an array of 3"},
         {"\"target_mm\": [0, 0, 0]", "\"target_mm\": [0, 0, 50]", ":5: camera.target_mm: expected another place"},

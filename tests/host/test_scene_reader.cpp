@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/paths.hpp"
@@ -11,8 +11,6 @@ using namespace stokes;
 using Catch::Matchers::Contains;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 const std::string base = R"({
   "format": "stokes-scene", "version": 1, "transport": "paper",
@@ -106,35 +104,36 @@ TEST_CASE("Branches and exits are as the scene says, or by its sampling and tran
     };
     RenderSettings none = render("");
     none.transport = Transport::conserving;
-    CHECK(chosen_branches(none) == Branches::both);
-    CHECK(chosen_exits(none) == 1);
+    CHECK(resolved(none).branches == Branches::both);
+    CHECK(resolved(none).exits == 1);
     none.transport = Transport::paper;
-    CHECK(chosen_branches(none) == Branches::roulette);
-    CHECK(chosen_branches(render(R"(, "sampling": "plain")")) == Branches::roulette);
-    RenderSettings given = render(R"(, "sampling": "plain", "branches": "both", "exits": 5)");
-    CHECK(chosen_branches(given) == Branches::both);
+    CHECK(resolved(none).branches == Branches::roulette);
+    CHECK(resolved(render(R"(, "sampling": "plain")")).branches == Branches::roulette);
+    RenderSettings given = render(R"(, "sampling": "plain", "branches": "both")");
+    CHECK(resolved(given).branches == Branches::both);
     given.transport = Transport::conserving;
-    CHECK(chosen_exits(given) == 5);
+    given.exits = 5;
+    CHECK(resolved(given).exits == 5);
     given.transport = Transport::paper;
-    CHECK(chosen_branches(given) == Branches::both);
-    CHECK(chosen_exits(given) == 1);  // of the distance, which is drawn without weights
-    CHECK(chosen_branches(render(R"(, "branches": "roulette")")) == Branches::roulette);
+    CHECK(resolved(given).branches == Branches::both);
+    CHECK(resolved(given).exits == 1);  // of the distance, which is drawn without weights
+    CHECK(resolved(render(R"(, "branches": "roulette")")).branches == Branches::roulette);
 }
 
 TEST_CASE("Distances of the model paper are as the scene says, or by its sampling") {
     const auto render = [](const std::string& settings) {
         return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;
     };
-    CHECK(chosen_distances(render("")) == Distances::importance);
-    CHECK(chosen_distances(render(R"(, "distances": "table")")) == Distances::table);
-    CHECK(chosen_distances(render(R"(, "sampling": "plain")")) == Distances::table);
+    CHECK(resolved(render("")).distances == Distances::importance);
+    CHECK(resolved(render(R"(, "distances": "table")")).distances == Distances::table);
+    CHECK(resolved(render(R"(, "sampling": "plain")")).distances == Distances::table);
     RenderSettings given = render(R"(, "sampling": "plain", "distances": "importance")");
-    CHECK(chosen_distances(given) == Distances::importance);
+    CHECK(resolved(given).distances == Distances::importance);
     given.tables = false;
-    CHECK(chosen_distances(given) == Distances::table);
+    CHECK(resolved(given).distances == Distances::table);
     given.tables = true;
     given.transport = Transport::conserving;
-    CHECK(chosen_distances(given) == Distances::table);
+    CHECK(resolved(given).distances == Distances::table);
 }
 
 TEST_CASE("Emission, direct light and radii are as the scene says, or by its sampling") {
@@ -142,18 +141,18 @@ TEST_CASE("Emission, direct light and radii are as the scene says, or by its sam
         return scene_with("\"seed\": 9", "\"seed\": 9" + settings).render;
     };
     const RenderSettings best = render(""), plain = render(R"(, "sampling": "plain")");
-    CHECK(chosen_emission(best) == Emission::aimed);
-    CHECK(chosen_direct(best) == Direct::rays);
-    CHECK(chosen_radii(best) == Radii::one);
-    CHECK(chosen_emission(plain) == Emission::random);
-    CHECK(chosen_direct(plain) == Direct::photons);
-    CHECK(chosen_radii(plain) == Radii::one);
+    CHECK(resolved(best).emission == Emission::aimed);
+    CHECK(resolved(best).direct == Direct::rays);
+    CHECK(resolved(best).radii == Radii::one);
+    CHECK(resolved(plain).emission == Emission::random);
+    CHECK(resolved(plain).direct == Direct::photons);
+    CHECK(resolved(plain).radii == Radii::one);
     const RenderSettings given =
         render(R"(, "sampling": "plain", "emission": "stratified", "direct": "rays", "radii": "local")");
-    CHECK(chosen_emission(given) == Emission::stratified);
-    CHECK(chosen_direct(given) == Direct::rays);
-    CHECK(chosen_radii(given) == Radii::local);
-    CHECK(chosen_direct(render(R"(, "direct": "photons")")) == Direct::photons);
+    CHECK(resolved(given).emission == Emission::stratified);
+    CHECK(resolved(given).direct == Direct::rays);
+    CHECK(resolved(given).radii == Radii::local);
+    CHECK(resolved(render(R"(, "direct": "photons")")).direct == Direct::photons);
 }
 
 TEST_CASE("A surface reflects where the scene says so") {
@@ -246,11 +245,11 @@ TEST_CASE("The flux of an emitter sums to its power, or to pi area radiance") {
 
     const Scene radiance = scene_with("\"power_W\": 5", "\"radiance_W_m2_sr\": 7");
     const double area_m2 = mesh_area_mm2(radiance.shapes[1].mesh) * 1e-6;
-    CHECK(area_m2 == Approx(pi * 1e-4).epsilon(1e-3));
-    CHECK(radiance.lights[0].flux.sum_1nm(300, 780) == Approx(pi * area_m2 * 7));
+    CHECK(area_m2 == Approx(M_PI * 1e-4).epsilon(1e-3));
+    CHECK(radiance.lights[0].flux.sum_1nm(300, 780) == Approx(M_PI * area_m2 * 7));
 
     const Scene absolute = scene_with("\"power_W\": 5", "\"radiance_scale_W_m2_sr_nm\": 3");
-    CHECK(absolute.lights[0].flux.at(400) == Approx(pi * area_m2 * 3 * 2));
+    CHECK(absolute.lights[0].flux.at(400) == Approx(M_PI * area_m2 * 3 * 2));
 
     const Scene narrow = scene_with("\"seed\": 9", "\"seed\": 9, \"lambda_min_nm\": 380, \"lambda_max_nm\": 399");
     CHECK(narrow.lights[0].flux.sum_1nm(380, 399) == Approx(5.0));
@@ -288,7 +287,7 @@ TEST_CASE("Beams carry irradiance times their cross-section") {
     const auto& round = std::get<DiskBeam>(disk.lights[0].kind);
     CHECK(disk.shapes.size() == 1);
     CHECK(round.direction == glm::dvec3(0, -1, 0));
-    CHECK(disk.lights[0].flux.sum_1nm(300, 780) == Approx(10 * pi * 4e-4));
+    CHECK(disk.lights[0].flux.sum_1nm(300, 780) == Approx(10 * M_PI * 4e-4));
     CHECK(glm::length(round.half_u_mm) == Approx(20));
     CHECK(glm::length(round.half_v_mm) == Approx(20));
 

@@ -1,106 +1,148 @@
-#include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "host/core/media_limits.hpp"
-#include "host/scene/scene.hpp"
-#include "host/scene/scene_keys.hpp"
+#include "host/scene/readers/scene_reader.hpp"
+#include "host/scene/settings/schema.hpp"
+#include "host/scene/settings/settings.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
-using Json = nlohmann::json;
-using Names = std::set<std::string>;
+using Catch::Matchers::Contains;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json read_schema() {
-    std::ifstream file(source_path("scenes/scene.schema.json"));
-    return Json::parse(file);
+// With every run of white space as one space, as line breaks differ.
+std::string in_one_line(const std::string& text) {
+    std::string result;
+    for (const char c : text)
+        if (std::isspace(static_cast<unsigned char>(c)) == 0)
+            result += c;
+        else if (!result.empty() && result.back() != ' ')
+            result += ' ';
+    return result;
 }
 
 // Every "$ref" below a node.
-void collect_references(const Json& node, Names& found) {
+void collect_references(const Json& node, std::set<std::string>& found) {
     for (const auto& [key, value] : node.items()) {
         if (key == "$ref") found.insert(value.get<std::string>());
         if (value.is_structured()) collect_references(value, found);
     }
 }
 
-}  // namespace
-
-TEST_CASE("The schema and the reader know the same objects with the same keys") {
-    const Json schema = read_schema();
-    CHECK(schema.at("$ref") == "#/$defs/scene");
-    Names kinds;
-    for (const ObjectKeys& keys : all_object_keys()) {
-        INFO(keys.kind);
-        CHECK(kinds.insert(keys.kind).second);
-        REQUIRE(schema.at("$defs").contains(keys.kind));
-        const Json& object = schema.at("$defs").at(keys.kind);
-        CHECK(object.at("additionalProperties") == false);
-        CHECK_FALSE(object.at("description").get<std::string>().empty());
-
-        Names in_schema;
-        for (const auto& [key, value] : object.at("properties").items()) in_schema.insert(key);
-        Names in_reader(keys.required.begin(), keys.required.end());
-        in_reader.insert(keys.optional.begin(), keys.optional.end());
-        CHECK(in_reader.size() == keys.required.size() + keys.optional.size());
-        CHECK(in_schema == in_reader);
-        CHECK(object.at("required").get<Names>() == Names(keys.required.begin(), keys.required.end()));
-    }
-    for (const auto& [kind, object] : schema.at("$defs").items()) {
-        INFO(kind);
-        CHECK((object.contains("properties") == (kinds.count(kind) == 1)));
-    }
+// A value in the setting's domain, as JSON text.
+std::string some_value(const Setting& setting) {
+    const Json schema = settings_as_json().at(setting.key);
+    if (schema.contains("enum")) return schema["enum"][0].dump();
+    return schema.contains("maximum") ? schema["maximum"].dump() : "true";
 }
 
-TEST_CASE("Every definition of the schema is referred to, and every reference is defined") {
-    const Json schema = read_schema();
-    Names references;
+std::string scene_text(Transport transport, const std::string& render) {
+    return R"({"format": "stokes-scene", "version": 1, "transport": ")" + word_of(transport) + R"(", "render": {)" +
+           render + R"(}, "camera": {"position_mm": [0, 5, 0], "target_mm": [0, 0, 0], "up": [0, 0, 1]},
+        "materials": {"floor": {"type": "diffuse", "reflectance": 0.5}},
+        "lights": [{"type": "sphere", "center_mm": [0, 9, 0], "radius_mm": 1, "spectrum": 1, "power_W": 1}]})";
+}
+
+}  // namespace
+
+TEST_CASE("The schema file is what the program prints", "[scene_schema]") {
+    const Outcome printed = run_stokes("schema");
+    CHECK(printed.code == 0);
+    CHECK(file_content(STOKES_SOURCE_DIR "/scenes/scene.schema.json") == printed.out);
+}
+
+TEST_CASE("Every definition of the schema is referred to, and every reference is defined", "[scene_schema]") {
+    const Json schema = scene_schema();
+    std::set<std::string> references, defined;
     collect_references(schema, references);
-    Names defined;
     for (const auto& [kind, object] : schema.at("$defs").items()) defined.insert("#/$defs/" + kind);
     CHECK(references == defined);
 }
 
-TEST_CASE("Every key of the schema says what it is, or is one of a few words, or refers to what says so") {
-    const Json schema = read_schema();
-    for (const ObjectKeys& keys : all_object_keys()) {
-        for (const auto& [key, value] : schema.at("$defs").at(keys.kind).at("properties").items()) {
-            INFO(keys.kind << "." << key);
-            CHECK((value.contains("description") || value.contains("const") || value.contains("enum") ||
-                   value.contains("$ref")));
-        }
+TEST_CASE("Every setting has a key and a flag of its own", "[scene_schema]") {
+    std::set<std::string> names;
+    for (const Setting& setting : settings()) {
+        INFO(setting.key);
+        CHECK(names.insert(setting.object + "." + setting.key).second);
+        CHECK(setting.flag().rfind("--", 0) == 0);
+        CHECK(names.insert(setting.flag()).second);
+        CHECK_FALSE(setting.traits.transports.empty());
     }
 }
 
-TEST_CASE("The schema has the reader's limits") {
-    const Json schema = read_schema();
-    const auto property = [&](const char* kind, const char* key) {
-        return schema.at("$defs").at(kind).at("properties").at(key);
-    };
-    CHECK(property("render", "photons_per_pass").at("maximum") == most_photons_per_pass);
-    CHECK(property("medium", "dipole_eta").at("maximum") == largest_dipole_eta);
-    for (const auto& [kind, key] :
-         {std::pair("reflectance_texture", "black"), std::pair("reflectance_texture", "white"),
-          std::pair("fluorophore", "excitation"), std::pair("fluorophore", "emission")})
-        CHECK(property(kind, key).at("$ref") == "#/$defs/spectrum_up_to_1");
-    CHECK(property("material_diffuse", "reflectance").at("$ref") == "#/$defs/reflectance");
-    CHECK(schema.at("$defs").at("reflectance").at("oneOf").at(0).at("$ref") == "#/$defs/spectrum_up_to_1");
-    CHECK(property("render", "branches").at("enum") == branches_words);
-    CHECK(property("render", "distances").at("enum") == distances_words);
-    CHECK(property("render", "emission").at("enum") == emission_words);
-    CHECK(property("render", "direct").at("enum") == direct_words);
-    CHECK(property("render", "radii").at("enum") == radii_words);
-    CHECK(property("render", "exits").at("maximum") == most_exits);
-    CHECK(property("scene", "transport").at("enum") == transport_words);
-    CHECK(property("scene", "transport").at("default") ==
-          transport_words[static_cast<std::size_t>(RenderSettings().transport)]);
-    CHECK(property("material_translucent", "fresnel").at("default") == TranslucentMaterial().fresnel);
-    CHECK(property("fluorophore", "quantum_yield").at("maximum") == 1);
-    for (const char* key : {"left", "top", "width", "height"}) CHECK(property("crop", key).at("maximum") == 1);
-    for (const char* key : {"width", "height"}) CHECK(property("crop", key).at("minimum") == 0.001);
-    CHECK(schema.at("$defs").at("spectrum_up_to_1").at("allOf").at(1).at("maximum") == 1);
+TEST_CASE("Help, schema and documents say the same sentence of a setting", "[scene_schema]") {
+    const std::string help = in_one_line(run_stokes("render --help").out);
+    const Json schema = scene_schema().at("$defs");
+    const std::string guide = file_content(STOKES_SOURCE_DIR "/scenes/README.md");
+    for (const Setting& setting : settings()) {
+        INFO(setting.key);
+        CHECK_THAT(help, Contains(setting.flag()) && Contains(setting.sentence()));
+        const std::string object = setting.object.empty() ? "scene" : setting.object;
+        CHECK(schema.at(object).at("properties").at(setting.key).at("description") == setting.sentence() + ".");
+    }
+    CHECK_THAT(guide, Contains("<!-- settings -->\n" + settings_table() + "<!-- end of settings -->\n"));
+}
+
+TEST_CASE("A setting that the transport has not is the same error from scene and flag", "[scene_schema]") {
+    const TemporaryFolder folder;
+    const std::string file = folder.file("s.json");
+    int refused = 0;
+    for (const Setting& setting : settings()) {
+        for (const Transport transport : all_transports) {
+            const auto& have = setting.traits.transports;
+            if (std::find(have.begin(), have.end(), transport) != have.end()) continue;
+            ++refused;
+            const std::string value = some_value(setting);
+            CAPTURE(setting.key, word_of(transport), value);
+            put_file(file, scene_text(transport, '"' + setting.key + "\": " + value));
+            const Outcome by_scene = run_stokes("render --png x.png " + file);
+            put_file(file, scene_text(transport, ""));
+            const bool yes_no = std::holds_alternative<YesNo>(setting.domain);
+            const Outcome by_flag =
+                run_stokes("render --png x.png " + file + " " + setting.flag() + (yes_no ? "" : " " + value));
+            CHECK(by_scene.code == 2);
+            CHECK(by_flag.code == 2);
+            const std::string end = ": " + setting.complaint(resolved([&] {
+                RenderSettings given;
+                given.transport = transport;
+                return given;
+            }())) + "\n";
+            CHECK_THAT(end, Contains(": expected transport \"") && Contains(", got \"" + word_of(transport) + "\""));
+            CHECK(by_scene.err == "stokes: " + file + ":1: " + setting.object + "." + setting.key + end);
+            CHECK(by_flag.err == "stokes: " + setting.flag() + end);
+        }
+    }
+    CHECK(refused ==
+          9);  // two transports each lack tables, distances, exits and first_collision_only; walk lacks branches
+}
+
+TEST_CASE("A flag's value is refused as the scene's is", "[scene_schema]") {
+    for (const Setting& setting : settings()) {
+        if (setting.object != "render") continue;
+        INFO(setting.key);
+        JsonValue wrong;  // null, which no setting may be
+        const std::string of_flag = input_error([&] {
+            parse_scene(scene_text(Transport::paper, ""), "s.json", {{setting.key, {setting.flag(), wrong}}});
+        });
+        const std::string of_scene =
+            input_error([&] { parse_scene(scene_text(Transport::paper, '"' + setting.key + "\": null"), "s.json"); });
+        CHECK(of_scene.substr(of_scene.find(": expected")) == of_flag.substr(of_flag.find(": expected")));
+    }
+}
+
+TEST_CASE("The command line's sampling takes back the samplers that the scene names", "[scene_schema]") {
+    const std::string text = scene_text(Transport::conserving, R"("exits": 3, "direct": "photons", "seed": 5)");
+    JsonValue best;
+    best.type = JsonValue::Type::string;
+    best.text = "best";
+    const Scene scene = parse_scene(text, "s.json", {{"sampling", {"--sampling", best}}});
+    CHECK_FALSE(scene.render.exits);
+    CHECK_FALSE(scene.render.direct);
+    CHECK(scene.render.seed == 5);
+    CHECK(parse_scene(text, "s.json").render.exits == 3);
 }

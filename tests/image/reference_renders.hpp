@@ -9,8 +9,8 @@
 
 #include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
-#include "host/scene/json_tree.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/core/json_tree.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
 #include "tests/support/paths.hpp"

@@ -41,6 +41,7 @@ TEST_CASE("a crop is its part of the picture, and of no other place in it", "[cr
     const Radii radii = GENERATE(Radii::one, Radii::local);
     CAPTURE(static_cast<int>(radii));
     Scene scene = small_scene(Transport::conserving);
+    scene.render.emission = Emission::aimed;
     scene.render.radius_mm = 12.0;
     scene.render.radii = radii;
     const RgbLayers whole = render(scene, width, height, {});

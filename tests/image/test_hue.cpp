@@ -2,11 +2,12 @@
 #include <set>
 
 #include "host/render/pass_spectra.hpp"
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/triangle_meshes.hpp"
 
 using namespace stokes;
 
@@ -57,7 +58,8 @@ std::vector<SeenPoint> seen_points(const Scene& scene) {
     const Buffer<Hit> hits(device, "hits", count);
     on_device.rays.kernels.program(device, "trace_rays.cl")
         .kernel("trace_closest_all")
-        .launch(count, count, on_device.rays.nodes, on_device.rays.blocks, on_device.rays.grid, ray_buffer, hits);
+        .launch(count,
+                Arguments().add("n", count).add(on_device.rays.arguments()).add("rays", ray_buffer).add("hits", hits));
     const std::vector<Triangle> triangles = on_device.triangles.download();
     std::vector<SeenPoint> points;
     for (const Hit& hit : hits.download()) {
@@ -65,8 +67,7 @@ std::vector<SeenPoint> seen_points(const Scene& scene) {
         if (hit.triangle == STOKES_NONE) continue;
         const Triangle& t = triangles[hit.triangle];
         points.back().shape = static_cast<int>(t.shape);
-        points.back().normal =
-            glm::normalize(glm::cross(glm::dvec3(t.e1x, t.e1y, t.e1z), glm::dvec3(t.e2x, t.e2y, t.e2z)));
+        points.back().normal = normal_of(t);
     }
     return points;
 }
@@ -115,10 +116,13 @@ Scene prisms() {
     return scene;
 }
 
-FilmImage rendered(const Scene& scene) {
-    Renderer renderer(test_device(), scene);
-    for (std::uint32_t pass = 0; pass < passes; ++pass) renderer.render_pass(pass);
-    return renderer.image();
+const FilmImage& picture_of_prisms() {
+    static const FilmImage picture = [] {
+        Renderer renderer(test_device(), prisms());
+        for (std::uint32_t pass = 0; pass < passes; ++pass) renderer.render_pass(pass);
+        return renderer.image();
+    }();
+    return picture;
 }
 
 // Of the light that the dots give back under the lamp, and of the lamp's own, at the wavelengths of the
@@ -150,7 +154,7 @@ TEST_CASE("wavelengths are dominant in their own light", "[hue]") {
 // re-radiated more than once, by other dots too, which moves the emission's short side: 0.015 in x and y.
 TEST_CASE("the prisms glow in the colours of their quantum dots", "[hue]") {
     const Scene scene = prisms();
-    const FilmImage image = rendered(scene);
+    const FilmImage& image = picture_of_prisms();
     const std::vector<SeenPoint> points = seen_points(scene);
     std::set<std::string> checked;
     for (std::size_t s = 0; s < scene.shapes.size(); ++s) {
@@ -184,7 +188,7 @@ TEST_CASE("the prisms glow in the colours of their quantum dots", "[hue]") {
 // turn away from theirs, stay violet.
 TEST_CASE("white things are violet in the lamp's light and tinted by the prism below", "[hue]") {
     const Scene scene = prisms();
-    const FilmImage image = rendered(scene);
+    const FilmImage& image = picture_of_prisms();
     const std::vector<SeenPoint> points = seen_points(scene);
     const glm::dvec2 lamp = lamp_chromaticity(scene);
     CHECK(dominant_wavelength(lamp) < 440.0);

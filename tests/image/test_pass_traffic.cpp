@@ -30,7 +30,7 @@ Traffic traffic_of(Transport transport, int edge, std::int64_t photons) {
 
 TEST_CASE("a pass reads back counts and the ledger's sums only, and allocates nothing") {
     for (const Transport transport : {Transport::paper, Transport::conserving, Transport::walk}) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)]);
+        CAPTURE(word_of(transport));
         const Traffic small = traffic_of(transport, 16, 8192), wide = traffic_of(transport, 64, 8192),
                       many = traffic_of(transport, 16, 65536);
         CHECK(small.allocations == 0);

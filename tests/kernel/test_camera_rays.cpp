@@ -19,7 +19,9 @@ struct alignas(8) Uint2 {
 
 std::vector<Uint2> pixels_of_rays(std::uint32_t width, std::uint32_t height) {
     const Buffer<Uint2> pixels(test_device(), "pixels", std::size_t{width} * height);
-    test_program("tiles.cl").kernel("pixels_of_rays").launch(pixels.size(), width, height, pixels);
+    test_program("tiles.cl")
+        .kernel("pixels_of_rays")
+        .launch(pixels.size(), Arguments().add("width", width).add("height", height).add("pixels", pixels, "uint2"));
     return pixels.download();
 }
 
@@ -40,7 +42,7 @@ std::vector<Ray> rays_of_pass(const CameraRecord& record, std::uint32_t pass_ind
     pass.low_discrepancy_pixels = even ? 1 : 0;
     const Buffer<PassConstants> constants(test_device(), "pass", std::vector<PassConstants>{pass});
     const Buffer<Ray> rays(test_device(), "rays", view.ray_count());
-    view.make_rays(constants, rays);
+    view.make_rays(Arguments("pass", constants), rays);
     return rays.download();
 }
 
@@ -159,7 +161,9 @@ TEST_CASE("plain places are independent random numbers", "[camera][tiny]") {
     const int width = 9, height = 7;
     const std::uint32_t n = width * height;
     const Buffer<float> buffer(test_device(), "uniforms", n * 4);
-    test_program("rng.cl").kernel("uniforms").launch(n, 11u, 3u, 5u, buffer, n);
+    test_program("rng.cl")
+        .kernel("uniforms")
+        .launch(n, Arguments().add("seed", 11u).add("pass", 3u).add("dimension", 5u).add("out", buffer).add("n", n));
     const std::vector<float> uniforms = buffer.download();
     const std::vector<glm::dvec2> places = places_in_pixels(width, height, 3, false);
     for (std::size_t pixel = 0; pixel < n; ++pixel) {

@@ -88,6 +88,17 @@ Arrivals random_arrivals(std::uint32_t paths, unsigned generator_seed) {
     return a;
 }
 
+// The event that a path is listed for; the transport of the pass is `paper`.
+std::uint8_t event_of(std::uint8_t list) {
+    if (list == STOKES_LIST_DIFFUSE) return STOKES_EVENT_DIFFUSE;
+    if (list == STOKES_LIST_NONE) return STOKES_EVENT_SPECULAR;
+    if (list == STOKES_LIST_ENDED) return STOKES_EVENT_NONE;
+    for (const std::uint8_t event : {STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_ELASTIC, STOKES_EVENT_BRANCHES})
+        if (list == STOKES_LIST_BELOW(STOKES_TRANSPORT_PAPER, event)) return event;
+    FAIL("a list of another transport: " << int(list));
+    return STOKES_EVENT_NONE;
+}
+
 struct Classified {
     std::vector<std::uint8_t> kinds;
     std::vector<SurfacePoint> points;
@@ -104,16 +115,36 @@ Classified classify(const Arrivals& a, std::uint32_t event = 0, std::uint32_t br
     round.branches = branches;
     Program(test_device(), "classify_photons.cl")
         .kernel("classify_photons")
-        .launch(a.list.size(), round, pass_on_device(seed), on_device(a.list), on_device(a.rays), on_device(a.hits),
-                on_device(a.flux), on_device(a.triangles), on_device(materials()), on_device(a.shapes),
-                on_device(spectra()), points, ledgers, kinds);
-    return {kinds.download(), points.download(), ledgers.download()};
+        .launch(a.list.size(), Arguments()
+                                   .add("round", round)
+                                   .add("pass", pass_on_device(seed))
+                                   .add("list", on_device(a.list))
+                                   .add("rays", on_device(a.rays))
+                                   .add("hits", on_device(a.hits))
+                                   .add("flux", on_device(a.flux))
+                                   .add("triangles", on_device(a.triangles))
+                                   .add("materials", on_device(materials()))
+                                   .add("shapes", on_device(a.shapes))
+                                   .add("spectra", on_device(spectra()))
+                                   .add("points", points)
+                                   .add("ledgers", ledgers)
+                                   .add("entry_lists", kinds));
+    std::vector<std::uint8_t> events = kinds.download();
+    std::transform(events.begin(), events.end(), events.begin(), event_of);
+    return {events, points.download(), ledgers.download()};
 }
 
 // The number in [0, 1) that decides about each path at event 0.
 std::vector<float> branch_draws(std::uint32_t paths) {
     const Buffer<float> out(test_device(), "uniforms", std::size_t{4} * paths);
-    test_program("rng.cl").kernel("uniforms").launch(paths, seed, 2u, 2u, out, paths);  // pass 2, RNG_BRANCH
+    test_program("rng.cl")
+        .kernel("uniforms")
+        .launch(paths, Arguments()
+                           .add("seed", seed)
+                           .add("pass", 2u)
+                           .add("dimension", 2u)
+                           .add("out", out)
+                           .add("n", paths));  // pass 2, RNG_BRANCH
     std::vector<float> draws;
     const std::vector<float> all = out.download();
     for (std::uint32_t i = 0; i < paths; ++i) draws.push_back(all[std::size_t{4} * i]);
@@ -187,50 +218,60 @@ std::vector<std::uint8_t> events_at(std::uint32_t material, std::uint32_t event)
 
 struct Lists {
     ListCounts totals;
-    std::vector<std::uint32_t> alive, diffuse, fluorescence, elastic, branches;
+    std::vector<std::uint32_t> alive, lists;
 };
 
 constexpr std::uint32_t untouched = 0xabababab;
 
-Lists make_lists(const std::vector<std::uint32_t>& list, const std::vector<std::uint8_t>& kinds,
+Lists make_lists(const std::vector<std::uint32_t>& list, const std::vector<std::uint8_t>& entry_lists,
                  std::uint32_t chunk_size) {
     const auto count = std::uint32_t(list.size());
     const std::uint32_t chunks = (count + chunk_size - 1) / chunk_size;
     const Buffer<ListCounts> counts(test_device(), "counts", chunks), totals(test_device(), "totals", 1);
     const std::vector<std::uint32_t> blank(count + 3, untouched);
-    const Buffer<std::uint32_t> paths = on_device(list), alive = on_device(blank), diffuse = on_device(blank),
-                                fluorescence = on_device(blank), elastic = on_device(blank),
-                                branches = on_device(blank);
-    const Buffer<std::uint8_t> of = on_device(kinds);
+    const Buffer<std::uint32_t> paths = on_device(list), alive = on_device(blank), lists = on_device(blank);
+    const Buffer<std::uint8_t> of = on_device(entry_lists);
+    const Arguments all = Arguments("count", count)
+                              .add("chunk_size", chunk_size)
+                              .add("chunks", chunks)
+                              .add("list", paths)
+                              .add("entry_lists", of)
+                              .add("chunk_counts", counts)
+                              .add("totals", totals)
+                              .add("next_alive", alive)
+                              .add("event_lists", lists);
     const Program program(test_device(), "classify_photons.cl");
-    program.kernel("count_lists").launch(chunks, count, chunk_size, of, counts);
-    program.kernel("scan_lists").launch(1, chunks, counts, totals);
-    program.kernel("write_lists")
-        .launch(chunks, count, chunk_size, paths, of, counts, alive, diffuse, fluorescence, elastic, branches);
-    return {totals.download().front(), alive.download(),   diffuse.download(),
-            fluorescence.download(),   elastic.download(), branches.download()};
+    program.kernel("count_lists").launch(chunks, all);
+    program.kernel("scan_lists").launch(1, all);
+    program.kernel("write_lists").launch(chunks, all);
+    return {totals.download().front(), alive.download(), lists.download()};
 }
 
-// The paths of the kinds that count, in the order of the list, then nothing but what stood there.
-void check_list(const std::vector<std::uint32_t>& written, std::uint32_t count, const std::vector<std::uint32_t>& list,
-                const std::vector<std::uint8_t>& kinds, const std::vector<int>& wanted) {
-    std::vector<std::uint32_t> expected;
-    for (std::size_t i = 0; i < list.size(); ++i)
-        if (std::count(wanted.begin(), wanted.end(), int(kinds[i])) > 0) expected.push_back(list[i]);
-    CHECK(count == expected.size());
-    expected.resize(written.size(), untouched);
-    CHECK(written == expected);
-}
-
-void check_lists(const std::vector<std::uint32_t>& list, const std::vector<std::uint8_t>& kinds,
+// The paths of each list, in the order of list, one list behind the other, then nothing but what stood there.
+void check_lists(const std::vector<std::uint32_t>& list, const std::vector<std::uint8_t>& entry_lists,
                  std::uint32_t chunk_size) {
     CAPTURE(list.size(), chunk_size);
-    const Lists lists = make_lists(list, kinds, chunk_size);
-    check_list(lists.alive, lists.totals.alive, list, kinds, {1, 2, 3, 4, 5});
-    check_list(lists.diffuse, lists.totals.diffuse, list, kinds, {STOKES_EVENT_DIFFUSE});
-    check_list(lists.fluorescence, lists.totals.fluorescence, list, kinds, {STOKES_EVENT_FLUORESCENCE});
-    check_list(lists.elastic, lists.totals.elastic, list, kinds, {STOKES_EVENT_ELASTIC});
-    check_list(lists.branches, lists.totals.branches, list, kinds, {STOKES_EVENT_BRANCHES});
+    const Lists made = make_lists(list, entry_lists, chunk_size);
+    std::vector<std::uint32_t> alive, lists;
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (entry_lists[i] != STOKES_LIST_ENDED) alive.push_back(list[i]);
+    CHECK(made.totals.alive == alive.size());
+    for (std::uint32_t l = 0; l < STOKES_LIST_COUNT; ++l) {
+        CHECK(made.totals.first[l] == lists.size());
+        for (std::size_t i = 0; i < list.size(); ++i)
+            if (entry_lists[i] == l) lists.push_back(list[i]);
+        CHECK(made.totals.first[l] + made.totals.count[l] == lists.size());
+    }
+    alive.resize(made.alive.size(), untouched);
+    lists.resize(made.lists.size(), untouched);
+    CHECK(made.alive == alive);
+    CHECK(made.lists == lists);
+}
+
+// Any list, none, or that of paths that have ended.
+std::uint8_t any_list(std::mt19937& generator) {
+    const auto n = static_cast<std::uint8_t>(generator() % (STOKES_LIST_COUNT + 2));
+    return n < STOKES_LIST_COUNT ? n : std::uint8_t(n == STOKES_LIST_COUNT ? STOKES_LIST_NONE : STOKES_LIST_ENDED);
 }
 
 }  // namespace
@@ -263,13 +304,15 @@ TEST_CASE("many photons are classified as the rules say", "[classify_photons]") 
     const Arrivals a = random_arrivals(20001, 2);
     const Classified result = classify(a);
     const std::vector<float> draws = branch_draws(20001);
-    std::vector<int> kinds(4, 0), fates(STOKES_FATE_COUNT, 0);
+    std::vector<int> kinds(STOKES_EVENT_BRANCHES + 1, 0), fates(STOKES_FATE_COUNT, 0);
     for (std::size_t entry = 0; entry < a.list.size(); ++entry) {
         check_arrival(a, result, entry, draws);
         ++kinds[result.kinds[entry]];
         ++fates[result.ledgers[a.list[entry]].fate];
     }
-    for (const int count : kinds) CHECK(count > 100);
+    for (const std::uint32_t kind :
+         {STOKES_EVENT_NONE, STOKES_EVENT_DIFFUSE, STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_ELASTIC})
+        CHECK(kinds[kind] > 100);
     for (const int fate : {STOKES_FATE_ALIVE, STOKES_FATE_ABSORBED, STOKES_FATE_ESCAPED, STOKES_FATE_OVERFLOW})
         CHECK(fates[std::size_t(fate)] > 100);
 }
@@ -303,9 +346,9 @@ TEST_CASE("the lists hold the paths of their kind in list order", "[classify_pho
         std::vector<std::uint8_t> kinds(count);
         std::iota(list.begin(), list.end(), 1000u);
         std::shuffle(list.begin(), list.end(), generator);
-        for (std::uint8_t& kind : kinds) kind = std::uint8_t(generator() % 6);
+        for (std::uint8_t& kind : kinds) kind = any_list(generator);
         check_lists(list, kinds, 16);
-        for (const int only : {0, 1, 2, 3, 4, 5})
+        for (const int only : {0, 1, 4, 9, int(STOKES_LIST_NONE), int(STOKES_LIST_ENDED)})
             check_lists(list, std::vector<std::uint8_t>(count, std::uint8_t(only)), 16);
     }
 }
@@ -315,6 +358,6 @@ TEST_CASE("long lists are the same for every chunk size", "[classify_photons]") 
     std::vector<std::uint32_t> list(50001);
     std::vector<std::uint8_t> kinds(list.size());
     std::iota(list.begin(), list.end(), 0u);
-    for (std::uint8_t& kind : kinds) kind = std::uint8_t(generator() % 6);
+    for (std::uint8_t& kind : kinds) kind = any_list(generator);
     for (const std::uint32_t chunk_size : {1u, 512u, 50000u, 60000u}) check_lists(list, kinds, chunk_size);
 }

@@ -56,8 +56,14 @@ std::vector<float> counts_of(const std::vector<GatherPoint>& points, const Photo
     const auto count = static_cast<std::uint32_t>(points.size());
     for (std::uint32_t level = 0; level < count_levels; ++level, counted_mm *= 2.0f) {
         builder.build(hash, heads, flux, slots, {-20.0f, -20.0f, 0.0f}, {20.0f, 20.0f, 0.0f}, counted_mm);
-        kernel.launch(count, given, count, map, level, enough, hash.grid(), hash.cell_starts(), hash.positions(),
-                      hash.normals(), hash.flux(), counts);
+        kernel.launch(count, Arguments()
+                                 .add("gather_points", given)
+                                 .add("count", count)
+                                 .add("map", map)
+                                 .add("level", level)
+                                 .add("enough", enough)
+                                 .add("counts", counts)
+                                 .add(hash.arguments()));
     }
     return counts.download();
 }

@@ -66,10 +66,20 @@ Exits sample(const SubsurfaceArrivals& a, const std::vector<std::uint32_t>& list
     const Buffer<Probe> probes = on_device(std::vector<Probe>(room, blank_probe));
     Program(test_device(), "deposit_subsurface.cl")
         .kernel("sample_exits")
-        .launch(list.size(), round, pass_on_device(9, 0, offset_mm), on_device(list), on_device(a.points),
-                on_device(a.rays), on_device(materials), on_device(conserving_spectra()), on_device(tables.shapes),
-                on_device(tables.mean_rows), on_device(tables.cumulative_rows), on_device(std::vector<EventSample>(1)),
-                exits, probes);
+        .launch(list.size(), Arguments()
+                                 .add("round", round)
+                                 .add("pass", pass_on_device(9, 0, offset_mm))
+                                 .add("event_lists", on_device(list))
+                                 .add("points", on_device(a.points))
+                                 .add("rays", on_device(a.rays))
+                                 .add("materials", on_device(materials))
+                                 .add("spectra", on_device(conserving_spectra()))
+                                 .add("table_shapes", on_device(tables.shapes))
+                                 .add("mean_rows", on_device(tables.mean_rows))
+                                 .add("cumulative_rows", on_device(tables.cumulative_rows))
+                                 .add("event_samples", on_device(std::vector<EventSample>(1)))
+                                 .add("exits", exits)
+                                 .add("probes", probes));
     return {exits.download(), probes.download()};
 }
 
@@ -175,11 +185,23 @@ Deposits deposit(const SubsurfaceArrivals& a, const std::vector<ExitPoint>& give
     const Buffer<PathLedger> ledgers = on_device(a.ledgers);
     const Buffer<PhotonHead> heads = on_device(std::vector<PhotonHead>(slots, PhotonHead{0, 0, 0, empty}));
     const Buffer<Flux16> map_flux = on_device(std::vector<Flux16>(slots, constant_flux(-1.0f)));
+    const Buffer<Flux16> exit_flux(test_device(), "exit flux", given.size());
     Program(test_device(), "deposit_subsurface.cl")
         .kernel("deposit_exits")
-        .launch(count, round, pass_on_device(9), on_device(a.points), on_device(materials),
-                on_device(conserving_spectra()), on_device(tables.shapes), on_device(tables.at_wavelengths), exits,
-                on_device(a.flux), ledgers, heads, map_flux);
+        .launch(count, Arguments()
+                           .add("round", round)
+                           .add("pass", pass_on_device(9))
+                           .add("points", on_device(a.points))
+                           .add("materials", on_device(materials))
+                           .add("spectra", on_device(conserving_spectra()))
+                           .add("table_shapes", on_device(tables.shapes))
+                           .add("table16", on_device(tables.at_wavelengths))
+                           .add("exits", exits)
+                           .add("flux", on_device(a.flux))
+                           .add("ledgers", ledgers)
+                           .add("exit_flux", exit_flux)
+                           .add("map_heads", heads)
+                           .add("map_flux", map_flux));
     return {exits.download(), ledgers.download(), heads.download(), map_flux.download()};
 }
 
@@ -413,7 +435,12 @@ TEST_CASE("exits are put where their probe hit, others are marked and keep their
     const Buffer<ExitPoint> buffer = on_device(given);
     Program(test_device(), "deposit_subsurface.cl")
         .kernel("place_exits")
-        .launch(78, 78u, on_device(probes), on_device(hits), on_device(triangles), buffer);
+        .launch(78, Arguments()
+                        .add("count", 78u)
+                        .add("probes", on_device(probes))
+                        .add("probe_hits", on_device(hits))
+                        .add("triangles", on_device(triangles))
+                        .add("exits", buffer));
     const std::vector<ExitPoint> placed = buffer.download();
     for (std::uint32_t i = 0; i < 80; ++i) {
         CAPTURE(i);

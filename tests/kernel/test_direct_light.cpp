@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "host/render/gather.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/known_light.hpp"
 #include "tests/support/photon_fixture.hpp"
@@ -40,9 +40,7 @@ class Bench {
         double area = 0.0;
         glm::dvec3 centre(0.0);
         for (std::uint32_t t = 0; t < light.triangle_count; ++t) {
-            const Triangle& tri = triangles_[light.first_triangle + t];
-            area += 0.5 * glm::length(
-                              glm::cross(glm::dvec3(tri.e1x, tri.e1y, tri.e1z), glm::dvec3(tri.e2x, tri.e2y, tri.e2z)));
+            area += area_of(triangles_[light.first_triangle + t]);
             areas_.push_back(static_cast<float>(area));
         }
         for (const glm::vec3& p : mesh.positions_mm)
@@ -94,10 +92,20 @@ class Bench {
         const Buffer<FilmValue> film = on_device(std::vector<FilmValue>(4 * points.size(), FilmValue{0, 0, 0, 0}));
         rays.kernels.program(test_device(), "direct_light.cl")
             .kernel("add_direct_light")
-            .launch(count, on_device(points), count, on_device(std::vector<PassConstants>{pass}), rays.nodes,
-                    rays.blocks, rays.grid, on_device(triangles_), on_device(shapes_),
-                    static_cast<std::uint32_t>(lights.size()), on_device(lights), on_device(areas),
-                    on_device(emission_), on_device(std::vector<Flux16>{dim, white}), on_device(materials_), film);
+            .launch(count, Arguments()
+                               .add("gather_points", on_device(points))
+                               .add("count", count)
+                               .add("pass", on_device(std::vector<PassConstants>{pass}))
+                               .add(rays.arguments())
+                               .add("triangles", on_device(triangles_))
+                               .add("shapes", on_device(shapes_))
+                               .add("light_count", static_cast<std::uint32_t>(lights.size()))
+                               .add("lights", on_device(lights))
+                               .add("light_areas", on_device(areas))
+                               .add("light_radiance", on_device(emission_))
+                               .add("spectra", on_device(std::vector<Flux16>{dim, white}))
+                               .add("texture_records", on_device(materials_))
+                               .add("film", film, "float4"));
         const std::vector<FilmValue> values = film.download();
         std::vector<double> result;
         for (std::size_t i = 0; i < values.size(); ++i) {

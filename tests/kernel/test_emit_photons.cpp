@@ -28,10 +28,6 @@ std::vector<Triangle> triangles() {
             make_triangle({5, 0, 0}, {5, 4, 0}, {5, 0, 2}), make_triangle({0, 5, 0}, {0, 5, 2}, {-2, 7, 0})};
 }
 
-double area_of(const Triangle& t) {
-    return 0.5 * glm::length(glm::cross(glm::dvec3(t.e1x, t.e1y, t.e1z), glm::dvec3(t.e2x, t.e2y, t.e2z)));
-}
-
 std::vector<LightRecord> lights() {
     std::vector<LightRecord> records(5);
     double cumulative = 0.0;
@@ -121,16 +117,45 @@ Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cel
             on_device(std::vector<EventSample>(room, EventSample{sentinel, sentinel}));
         const auto count = static_cast<std::uint32_t>(cells->records().size());
         program.kernel("emit_stratified")
-            .launch(photons, pass, count, records, starts, on_device(lights()), on_device(areas), on_device(all),
-                    on_device(photon_flux()), rays, flux, ledgers, list, event_samples);
+            .launch(photons, Arguments()
+                                 .add("pass", pass)
+                                 .add("cell_count", count)
+                                 .add("cells", records)
+                                 .add("first_photons", starts)
+                                 .add("lights", on_device(lights()))
+                                 .add("light_areas", on_device(areas))
+                                 .add("triangles", on_device(all))
+                                 .add("photon_flux", on_device(photon_flux()))
+                                 .add("rays", rays)
+                                 .add("flux", flux)
+                                 .add("ledgers", ledgers)
+                                 .add("list", list)
+                                 .add("event_samples", event_samples));
         words = event_samples.download();
-        program.kernel("find_places").launch(photons, pass, count, records, starts, on_device(lights()), owners, at);
+        program.kernel("find_places")
+            .launch(photons, Arguments()
+                                 .add("pass", pass)
+                                 .add("cell_count", count)
+                                 .add("cells", records)
+                                 .add("first_photons", starts)
+                                 .add("lights", on_device(lights()))
+                                 .add("cell_of_path", owners)
+                                 .add("places", at, "float4"));
         cell_of_path = owners.download();
         places = at.download();
     } else {
         program.kernel("emit_photons")
-            .launch(photons, pass, 5u, on_device(lights()), on_device(areas), on_device(all), on_device(photon_flux()),
-                    rays, flux, ledgers, list);
+            .launch(photons, Arguments()
+                                 .add("pass", pass)
+                                 .add("light_count", 5u)
+                                 .add("lights", on_device(lights()))
+                                 .add("light_areas", on_device(areas))
+                                 .add("triangles", on_device(all))
+                                 .add("photon_flux", on_device(photon_flux()))
+                                 .add("rays", rays)
+                                 .add("flux", flux)
+                                 .add("ledgers", ledgers)
+                                 .add("list", list));
     }
     Emitted result{rays.download(photons),
                    flux.download(photons),
@@ -159,8 +184,8 @@ std::size_t triangle_below(const Ray& ray, double& u, double& v) {
     const std::vector<Triangle> all = triangles();
     for (std::size_t i = 1; i < all.size(); ++i) {
         const Triangle& t = all[i];
-        const glm::dvec3 n = normal_of(t), e1(t.e1x, t.e1y, t.e1z), e2(t.e2x, t.e2y, t.e2z);
-        const glm::dvec3 p = origin_of(ray) - double(offset_mm) * n - glm::dvec3(t.v0x, t.v0y, t.v0z);
+        const glm::dvec3 n = normal_of(t), e1 = e1_of(t), e2 = e2_of(t);
+        const glm::dvec3 p = origin_of(ray) - double(offset_mm) * n - v0_of(t);
         if (std::abs(glm::dot(p, n)) > 2e-6) continue;
         const double size = glm::dot(glm::cross(e1, e2), n);
         u = glm::dot(glm::cross(p, e2), n) / size;
@@ -210,10 +235,16 @@ TEST_CASE("a light of a kind that nobody knows emits nothing", "[emit_photons][t
     const Buffer<PathLedger> ledgers(test_device(), "ledgers", 1);
     Program(test_device(), "emit_photons.cl")
         .kernel("emit_photons")
-        .launch(1, pass_on_device(1, 1, offset_mm), 1u, on_device(std::vector<LightRecord>{light}),
-                on_device(std::vector<float>{1.0f}), on_device(triangles()),
-                on_device(std::vector<Flux16>{constant_flux(1.0f)}), on_device(std::vector<Ray>(1)),
-                on_device(std::vector<Flux16>(1)), ledgers, on_device(std::vector<std::uint32_t>(1)));
+        .launch(1, Arguments("pass", pass_on_device(1, 1, offset_mm))
+                       .add("light_count", 1u)
+                       .add("lights", on_device(std::vector<LightRecord>{light}))
+                       .add("light_areas", on_device(std::vector<float>{1.0f}))
+                       .add("triangles", on_device(triangles()))
+                       .add("photon_flux", on_device(std::vector<Flux16>{constant_flux(1.0f)}))
+                       .add("rays", on_device(std::vector<Ray>(1)))
+                       .add("flux", on_device(std::vector<Flux16>(1)))
+                       .add("ledgers", ledgers)
+                       .add("list", on_device(std::vector<std::uint32_t>(1))));
     const PathLedger ledger = ledgers.download().front();
     CHECK((ledger.emitted.energy == 0.0f && ledger.rays == 0 && ledger.fate == STOKES_FATE_ABSORBED));
 }

@@ -38,9 +38,20 @@ Exits sample(const SubsurfaceArrivals& a, const EventRound& round, bool even, co
     const Buffer<Probe> probes(test_device(), "probes", a.elastic.size());
     Program(test_device(), "deposit_subsurface.cl")
         .kernel("sample_exits")
-        .launch(a.elastic.size(), round, pass, on_device(a.elastic), on_device(a.points), on_device(a.rays),
-                on_device(translucent_materials()), on_device(translucent_spectra()), on_device(tables.shapes),
-                on_device(tables.mean_rows), on_device(tables.cumulative_rows), on_device(words), exits, probes);
+        .launch(a.elastic.size(), Arguments()
+                                      .add("round", round)
+                                      .add("pass", pass)
+                                      .add("event_lists", on_device(a.elastic))
+                                      .add("points", on_device(a.points))
+                                      .add("rays", on_device(a.rays))
+                                      .add("materials", on_device(translucent_materials()))
+                                      .add("spectra", on_device(translucent_spectra()))
+                                      .add("table_shapes", on_device(tables.shapes))
+                                      .add("mean_rows", on_device(tables.mean_rows))
+                                      .add("cumulative_rows", on_device(tables.cumulative_rows))
+                                      .add("event_samples", on_device(words))
+                                      .add("exits", exits)
+                                      .add("probes", probes));
     return {exits.download(), probes.download()};
 }
 

@@ -27,8 +27,14 @@ Collisions draw(const Flux16& sigma_t, const Flux16& uptake, const std::vector<F
     const Buffer<Flux16> weights(test_device(), "weights", std::size_t{3} * n);
     test_program("first_collision.cl")
         .kernel("draw_collisions")
-        .launch(n, on_device(std::vector<Flux16>{sigma_t}), on_device(std::vector<Flux16>{uptake}), on_device(u), n,
-                way, weights, branch);
+        .launch(n, Arguments()
+                       .add("sigma_t", on_device(std::vector<Flux16>{sigma_t}))
+                       .add("uptake", on_device(std::vector<Flux16>{uptake}))
+                       .add("u", on_device(u), "float2")
+                       .add("n", n)
+                       .add("way_mm", way)
+                       .add("weights", weights)
+                       .add("branch", branch));
     return {way.download(), weights.download(), branch.download()};
 }
 

@@ -2,7 +2,7 @@
 #include <random>
 #include <vector>
 
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/photon_fixture.hpp"
 #include "tests/support/traced_scene.hpp"
@@ -12,14 +12,6 @@ using namespace stokes;
 namespace {
 
 constexpr float offset_mm = 1e-4f;
-
-std::vector<Triangle> triangles_of(const Mesh& mesh, std::uint32_t body) {
-    std::vector<Triangle> triangles;
-    for (const glm::uvec3& t : mesh.triangles)
-        triangles.push_back(
-            make_triangle(mesh.positions_mm[t.x], mesh.positions_mm[t.y], mesh.positions_mm[t.z], 0, body));
-    return triangles;
-}
 
 // Points of the tangent plane at the entries, all of them missed by their probes.
 struct Missed {
@@ -40,8 +32,13 @@ std::vector<ExitPoint> fold(const Traced& scene, const Missed& missed) {
     const Buffer<ExitPoint> exits = on_device(missed.exits);
     Program(test_device(), "fold_exits.cl")
         .kernel("fold_exits")
-        .launch(n, n, pass_on_device(1, 0, offset_mm), scene.nodes, scene.blocks, scene.bvh.grid, scene.triangle_buffer,
-                on_device(missed.probes), exits);
+        .launch(n, Arguments()
+                       .add("count", n)
+                       .add("pass", pass_on_device(1, 0, offset_mm))
+                       .add(scene.arguments())
+                       .add("triangles", scene.triangle_buffer)
+                       .add("probes", on_device(missed.probes))
+                       .add("exits", exits));
     return exits.download();
 }
 

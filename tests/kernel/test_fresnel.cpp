@@ -28,7 +28,9 @@ std::vector<Reflectances> found_at(const std::vector<float>& cosines, const std:
     for (std::size_t i = 0; i < cosines.size(); ++i) given.push_back({cosines[i], eta[i]});
     const Buffer<Pair> in(test_device(), "cosines", given), out(test_device(), "reflectances", given.size());
     const auto n = static_cast<cl_uint>(given.size());
-    test_program("fresnel.cl").kernel("reflectances").launch(n, in, out, n);
+    test_program("fresnel.cl")
+        .kernel("reflectances")
+        .launch(n, Arguments().add("cosines", in, "float2").add("found", out, "float2").add("n", n));
     std::vector<Reflectances> result;
     for (const Pair& p : out.download()) result.push_back({static_cast<double>(p.x), static_cast<double>(p.y)});
     return result;
@@ -111,7 +113,14 @@ void check_directions(int count) {
     const Buffer<Four> refracted(test_device(), "refracted", directions.size());
     const Buffer<Four> mirrored(test_device(), "mirrored", directions.size());
     const auto n = static_cast<cl_uint>(count);
-    test_program("fresnel.cl").kernel("turned").launch(n, in, up, refracted, mirrored, n);
+    test_program("fresnel.cl")
+        .kernel("turned")
+        .launch(n, Arguments()
+                       .add("directions", in, "float4")
+                       .add("normals", up, "float4")
+                       .add("refracted", refracted, "float4")
+                       .add("mirrored", mirrored, "float4")
+                       .add("n", n));
     const auto vector = [](const Four& f) { return glm::dvec3(f.x, f.y, f.z); };
     const std::vector<Four> into = refracted.download(), back = mirrored.download();
     for (std::size_t i = 0; i < directions.size(); ++i) {

@@ -11,8 +11,6 @@ using namespace stokes;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Materials of the tests, by index; reflectances are in the row of the same number.
 enum : std::uint32_t { black, grey, white, plain_translucent, surface_fluorescent, smooth_translucent, unknown };
 
@@ -62,7 +60,7 @@ class Bench {
         set_photons(photons, radius_mm);
     }
 
-    void collect() { gather_.collect_points(scene_, pass_, rays_, hits_, film_); }
+    void collect() { gather_.collect_points(common_, rays_, hits_, film_); }
     // Points get that many times the radius each; the surface map is gathered class by class.
     void run_with(const std::vector<float>& factors, const std::vector<Seen>& seen, const std::vector<Photon>& photons,
                   float radius_mm) {
@@ -73,10 +71,10 @@ class Bench {
         gather_.choose_radii();
         for (const float radius_class : gather_.radius_classes()) {
             set_photons(photons, radius_class * radius_mm);
-            gather_.add_map(STOKES_MAP_SURFACE, radius_class, hash_, scene_, pass_, film_);
+            gather_.add_map(common_, STOKES_MAP_SURFACE, radius_class, hash_, film_);
         }
     }
-    void add(std::uint32_t map) { gather_.add_map(map, 1.0f, hash_, scene_, pass_, film_); }
+    void add(std::uint32_t map) { gather_.add_map(common_, map, 1.0f, hash_, film_); }
     void run() {
         collect();
         for (std::uint32_t map = 0; map < STOKES_MAP_COUNT; ++map) add(map);
@@ -130,9 +128,16 @@ class Bench {
         std::vector<LightRecord> records(2);
         records[0].kind = STOKES_LIGHT_SURFACE;
         records[1].kind = 77;
-        scene_ = {{device, "triangles", triangles}, {device, "shapes", shapes},   {device, "materials", materials},
-                  {device, "lights", records},      {device, "spectra", spectra}, {device, "emitted", lights},
-                  no_textures(materials.size())};
+        common_ = Arguments("triangles", Buffer<Triangle>(device, "triangles", triangles))
+                      .add("shapes", Buffer<ShapeRecord>(device, "shapes", shapes))
+                      .add("materials", Buffer<MaterialRecord>(device, "materials", materials))
+                      .add("spectra", Buffer<Flux16>(device, "spectra", spectra))
+                      .add("light_count", 2u)
+                      .add("lights", Buffer<LightRecord>(device, "lights", records))
+                      .add("light_areas", Buffer<float>(device, "areas", 1))
+                      .add("light_radiance", Buffer<Flux16>(device, "emitted", lights))
+                      .add("pass", pass_)
+                      .add(no_textures(materials.size()).arguments());
         rays_ = {device, "rays", rays};
         hits_ = {device, "hits", hits};
     }
@@ -164,7 +169,7 @@ class Bench {
     SpatialHash hash_;
     Buffer<FilmValue> film_;
     Buffer<PassConstants> pass_;
-    GatherScene scene_;
+    Arguments common_;
     Buffer<Ray> rays_;
     Buffer<Hit> hits_;
 };
@@ -194,7 +199,7 @@ Expected expected_light(const Seen& seen, const std::vector<Photon>& photons, do
     }
     const PassConstants pass = pass_constants();
     for (int k = 0; k < 16; ++k) {
-        const double radiance = sum * spectrum(k) * reflectance(seen.material, k) / (pi * pi * radius * radius);
+        const double radiance = sum * spectrum(k) * reflectance(seen.material, k) / (M_PI * M_PI * radius * radius);
         result.x += radiance * pass.to_x[k];
         result.y += radiance * pass.to_y[k];
         result.z += radiance * pass.to_z[k];
@@ -339,7 +344,7 @@ TEST_CASE("uniform photons on a plane give radiance flux / (pi area)", "[gather]
     double spectrum_sum = 0.0, mean = 0.0;
     for (int k = 0; k < 16; ++k) spectrum_sum += spectrum(k);
     for (const FilmValue& value : bench.film()) mean += value.x / static_cast<double>(seen.size());
-    CHECK(mean == Approx(80000.0 / 100.0 / pi * spectrum_sum).epsilon(4.0 / std::sqrt(4000.0 * 20.0)));
+    CHECK(mean == Approx(80000.0 / 100.0 / M_PI * spectrum_sum).epsilon(4.0 / std::sqrt(4000.0 * 20.0)));
 }
 
 TEST_CASE("materials see their own maps", "[gather][tiny]") {
@@ -351,8 +356,8 @@ TEST_CASE("materials see their own maps", "[gather][tiny]") {
     bench.run();
     double white_x = 0.0, grey_x = 0.0;
     for (int k = 0; k < 16; ++k) {
-        white_x += 2.0 * spectrum(k) / (pi * pi * 0.25);
-        grey_x += 2.0 * spectrum(k) * reflectance(grey, k) / (pi * pi * 0.25);
+        white_x += 2.0 * spectrum(k) / (M_PI * M_PI * 0.25);
+        grey_x += 2.0 * spectrum(k) * reflectance(grey, k) / (M_PI * M_PI * 0.25);
     }
     const double smooth_x = white_x * static_cast<double>(exit_scale);
     const double expected[4][6] = {{0, 0, 0, white_x, white_x, smooth_x},
@@ -383,7 +388,7 @@ TEST_CASE("light does not come through a wall, round an edge or from a step", "[
     Bench lit(seen, {{{0.1, 0.0, 0.24}, up}, {{0.5, 0.5, 0.0}, glm::normalize(glm::dvec3(1.5, 0.0, 1.0))}}, 1.0f);
     lit.run();
     double expected = 0.0;
-    for (int k = 0; k < 16; ++k) expected += 2.0 * spectrum(k) / (pi * pi);
+    for (int k = 0; k < 16; ++k) expected += 2.0 * spectrum(k) / (M_PI * M_PI);
     CHECK(lit.x(STOKES_MAP_SURFACE, 0) == Approx(expected).epsilon(1e-5));
 }
 
@@ -397,7 +402,7 @@ TEST_CASE("the faces of a regular prism treat each other's photons alike at ever
             const glm::dvec3 u = glm::normalize(glm::cross(axis, other)), v = glm::cross(axis, u);
             std::vector<glm::dvec3> normals;
             for (int i = 0; i < sides; ++i) {
-                const double angle = 2.0 * pi * i / sides;
+                const double angle = 2.0 * M_PI * i / sides;
                 normals.push_back(std::cos(angle) * u + std::sin(angle) * v);
             }
             // The edge of faces a and b lies at a + b scaled to its distance; in order of edges, 10 mm apart.
@@ -416,7 +421,7 @@ TEST_CASE("the faces of a regular prism treat each other's photons alike at ever
             Bench bench(seen, photons, 1.0f);
             bench.run();
             const std::vector<FilmValue> film = bench.film();
-            const bool counts = std::cos(2.0 * pi / sides) > STOKES_GATHER_MIN_COSINE;
+            const bool counts = std::cos(2.0 * M_PI / sides) > STOKES_GATHER_MIN_COSINE;
             CAPTURE(sides);
             for (std::size_t i = 0; i < seen.size(); ++i)
                 REQUIRE((film[STOKES_MAP_SURFACE * seen.size() + i].x > 0.0f) == counts);
@@ -434,7 +439,7 @@ TEST_CASE("emitters shine from their front, beside what they reflect; passes add
     double direct = 0.0, reflected = 0.0;
     for (int k = 0; k < 16; ++k) {
         direct += emitted(k);
-        reflected += spectrum(k) / (pi * pi);
+        reflected += spectrum(k) / (M_PI * M_PI);
     }
     for (int pass = 1; pass <= 2; ++pass) {
         bench.run();

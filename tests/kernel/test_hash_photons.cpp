@@ -187,7 +187,14 @@ void check_runs(glm::vec3 low, glm::vec3 high, float radius, std::uint32_t slots
     }
     const Buffer<Float4> input(test_device(), "queries", queries);
     const Buffer<Uint4> begin_buffer(test_device(), "begins", count), end_buffer(test_device(), "ends", count);
-    test_program("hash_runs.cl").kernel("find_runs").launch(count, input, count, grid, begin_buffer, end_buffer);
+    test_program("hash_runs.cl")
+        .kernel("find_runs")
+        .launch(count, Arguments()
+                           .add("queries", input, "float4")
+                           .add("n", count)
+                           .add("grid", grid)
+                           .add("begins", begin_buffer, "uint4")
+                           .add("ends", end_buffer, "uint4"));
     const std::vector<Uint4> begins = begin_buffer.download(), ends = end_buffer.download();
     for (std::uint32_t i = 0; i < count; ++i) {
         for (int run = 0; run < 4; ++run) {

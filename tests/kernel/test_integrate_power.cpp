@@ -49,7 +49,12 @@ std::vector<Flux16> integrated(const std::vector<ExitPoint>& exits, const std::v
         on_device(std::vector<Flux16>(before + exits.size() + after, constant_flux(unwritten)));
     Program(test_device(), "integrate_power.cl")
         .kernel("integrate_power")
-        .launch(exits.size(), round, on_device(all), on_device(translucent_materials()), on_device(media), power);
+        .launch(exits.size(), Arguments()
+                                  .add("round", round)
+                                  .add("exits", on_device(all))
+                                  .add("materials", on_device(translucent_materials()))
+                                  .add("media", on_device(media))
+                                  .add("exit_powers", power));
     std::vector<Flux16> result = power.download();
     for (std::size_t i = 0; i < result.size(); ++i)
         if (i < before || i >= before + exits.size()) CHECK(result[i].v[0] == unwritten);
@@ -167,11 +172,17 @@ Drawn draw(const MediumMixture& mixture, float eta, std::uint32_t component, dou
     const Buffer<Probe> probes = on_device(std::vector<Probe>(before + count + after, Probe{}));
     Program(test_device(), "integrate_power.cl")
         .kernel("draw_exits")
-        .launch(count, round, pass_on_device(seed, 0, 0.01f), on_device(list),
-                on_device(std::vector<SurfacePoint>(count, point)), on_device(std::vector<Ray>(count, ray)),
-                on_device(std::vector<MaterialRecord>{material}),
-                on_device(std::vector<DistanceMixture>{DistanceMixture{}, mixture.record}), on_device(rows), exits,
-                probes);
+        .launch(count, Arguments()
+                           .add("round", round)
+                           .add("pass", pass_on_device(seed, 0, 0.01f))
+                           .add("event_lists", on_device(list))
+                           .add("points", on_device(std::vector<SurfacePoint>(count, point)))
+                           .add("rays", on_device(std::vector<Ray>(count, ray)))
+                           .add("materials", on_device(std::vector<MaterialRecord>{material}))
+                           .add("mixtures", on_device(std::vector<DistanceMixture>{DistanceMixture{}, mixture.record}))
+                           .add("mix_rows", on_device(rows))
+                           .add("exits", exits)
+                           .add("probes", probes));
     Drawn drawn;
     drawn.exits = exits.download(count, before);
     drawn.probes = probes.download(count, before);

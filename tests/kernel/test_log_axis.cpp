@@ -69,8 +69,14 @@ std::vector<float> draw(const LogTable& table, float row, const std::vector<floa
     const Buffer<float> distances(device, "distances", u.size());
     test_program("power_table.cl")
         .kernel("draw_distances")
-        .launch(u.size(), mean, cumulative, table.shape, rows, uniforms, distances,
-                static_cast<std::uint32_t>(u.size()));
+        .launch(u.size(), Arguments()
+                              .add("mean_rows", mean)
+                              .add("cumulative_rows", cumulative)
+                              .add("shape", table.shape)
+                              .add("theta_deg", rows)
+                              .add("u", uniforms)
+                              .add("r_mm", distances)
+                              .add("n", static_cast<std::uint32_t>(u.size())));
     return distances.download();
 }
 
@@ -127,7 +133,13 @@ TEST_CASE("look-ups on logarithmic axes are bilinear in the values", "[log_axis]
     const Buffer<float> r(device, "r", r_mm), row(device, "rows", rows);
     test_program("power_table.cl")
         .kernel("look_up")
-        .launch(rows.size(), table16, table.shape, r, row, out, static_cast<std::uint32_t>(rows.size()));
+        .launch(rows.size(), Arguments()
+                                 .add("table16", table16)
+                                 .add("shape", table.shape)
+                                 .add("r_mm", r)
+                                 .add("theta_deg", row)
+                                 .add("out", out)
+                                 .add("n", static_cast<std::uint32_t>(rows.size())));
     const std::vector<Flux16> found = out.download();
     for (std::size_t k = 0; k < rows.size(); ++k) {
         CAPTURE(k);

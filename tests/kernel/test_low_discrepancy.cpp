@@ -20,7 +20,14 @@ struct alignas(16) Point4 {
 std::vector<Point4> points(std::uint32_t first, std::uint32_t seed, std::uint32_t n) {
     const Buffer<Point4> all(test_device(), "points", n);
     const Buffer<Point2> two(test_device(), "first two dimensions", n);
-    test_program("low_discrepancy.cl").kernel("points").launch(n, first, seed, all, two, n);
+    test_program("low_discrepancy.cl")
+        .kernel("points")
+        .launch(n, Arguments()
+                       .add("first", first)
+                       .add("seed", seed)
+                       .add("all", all, "float4")
+                       .add("two", two, "float2")
+                       .add("n", n));
     const std::vector<Point4> result = all.download();
     const std::vector<Point2> pairs = two.download();
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -70,7 +77,9 @@ TEST_CASE("unscrambled points are those of Sobol', Joe and Kuo", "[low_discrepan
     for (const std::uint32_t start : {0u, 0xffffff80u, 0x9e377900u}) {
         const std::uint32_t n = 128;
         const Buffer<std::uint32_t> buffer(test_device(), "words", n * 6);
-        test_program("low_discrepancy.cl").kernel("unscrambled_words").launch(n, buffer, start, n);
+        test_program("low_discrepancy.cl")
+            .kernel("unscrambled_words")
+            .launch(n, Arguments().add("words", buffer).add("first", start).add("n", n));
         const std::vector<std::uint32_t> words = buffer.download();
         for (std::uint32_t i = 0; i < n; ++i)
             for (std::size_t d = 0; d < 6; ++d) {
@@ -103,7 +112,10 @@ TEST_CASE("later dimensions are the same point's, and even", "[low_discrepancy][
         for (int m = 0; m <= 8; ++m) {
             const std::uint32_t n = 1u << m, first = 3u * n;
             const Buffer<Point4> buffer(test_device(), "points", n);
-            test_program("low_discrepancy.cl").kernel("later_points").launch(n, first, seed, buffer, n);
+            test_program("low_discrepancy.cl")
+                .kernel("later_points")
+                .launch(n,
+                        Arguments().add("first", first).add("seed", seed).add("points", buffer, "float4").add("n", n));
             const std::vector<Point4> later = buffer.download(), four = points(first, seed, n);
             for (std::uint32_t i = 0; i < n; ++i)
                 REQUIRE((later[i].u[0] == four[i].u[2] && later[i].u[1] == four[i].u[3]));
@@ -135,7 +147,9 @@ TEST_CASE("seeds scramble and shuffle differently", "[low_discrepancy][tiny]") {
     std::vector<std::uint32_t> previous;
     for (const std::uint32_t seed : {1u, 2u}) {
         const Buffer<std::uint32_t> buffer(test_device(), "indices", 256);
-        test_program("low_discrepancy.cl").kernel("shuffled").launch(256, seed, buffer, 256u);
+        test_program("low_discrepancy.cl")
+            .kernel("shuffled")
+            .launch(256, Arguments().add("seed", seed).add("indices", buffer).add("n", 256u));
         const std::vector<std::uint32_t> indices = buffer.download();
         CHECK(indices != previous);
         previous = indices;
@@ -152,7 +166,9 @@ TEST_CASE("over seeds a point is uniform", "[low_discrepancy]") {
     const Buffer<Point4> buffer(test_device(), "points", n);
     Kernel kernel = test_program("low_discrepancy.cl").kernel("points_of_seeds");
     for (const std::uint32_t index : {0u, 1u, 2u, 1000u, 0xffffffffu}) {
-        kernel.launch(n, index, index * 0x10000u, buffer, n);
+        kernel.launch(
+            n,
+            Arguments("index", index).add("first_seed", index * 0x10000u).add("points", buffer, "float4").add("n", n));
         const std::vector<Point4> all = buffer.download();
         const auto cell = [](float u, float parts) { return static_cast<std::size_t>(u * parts); };
         for (std::size_t d = 0; d < 4; ++d) {
@@ -174,7 +190,7 @@ TEST_CASE("joined sequences are independent over seeds", "[low_discrepancy]") {
     const Buffer<Point2> buffer(test_device(), "points", n);
     Kernel kernel = test_program("low_discrepancy.cl").kernel("joined");
     for (const std::uint32_t index : {0u, 12345u}) {
-        kernel.launch(n, index, buffer, n);
+        kernel.launch(n, Arguments().add("index", index).add("out", buffer, "float2").add("n", n));
         std::vector<double> counts(256, 0.0);
         for (const Point2& p : buffer.download())
             counts[static_cast<std::size_t>(p.x * 16.0f) * 16 + static_cast<std::size_t>(p.y * 16.0f)] += 1.0;

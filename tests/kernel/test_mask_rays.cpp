@@ -4,8 +4,8 @@
 #include <random>
 
 #include "host/render/device_scene.hpp"
-#include "host/scene/mask.hpp"
-#include "host/scene/mesh.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/readers/mask.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/traced_scene.hpp"
 

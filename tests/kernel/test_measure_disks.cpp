@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "host/scene/bvh_builder.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/bvh/bvh_builder.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "kernels/shared/gather.h"
 #include "tests/support/catch.hpp"
 #include "tests/support/photon_fixture.hpp"
@@ -10,13 +10,6 @@
 using namespace stokes;
 
 namespace {
-
-std::vector<Triangle> triangles_of(const Mesh& mesh) {
-    std::vector<Triangle> triangles;
-    for (const glm::uvec3& t : mesh.triangles)
-        triangles.push_back(make_triangle(mesh.positions_mm[t.x], mesh.positions_mm[t.y], mesh.positions_mm[t.z]));
-    return triangles;
-}
 
 GatherPoint point_at(double x, double y, double z) {
     GatherPoint point{};
@@ -56,8 +49,15 @@ std::vector<double> weights_by_pixel(const Mesh& mesh, GatherPoint point, std::u
     pass.upload(&constants, 1);
     Program(test_device(), "measure_disks.cl")
         .kernel("measure_disks")
-        .launch(count, count, radius_mm, pass, on_device(bvh.nodes), on_device(bvh.blocks), bvh.grid,
-                on_device(triangles), points);
+        .launch(count, Arguments()
+                           .add("count", count)
+                           .add("radius_mm", radius_mm)
+                           .add("pass", pass)
+                           .add("bvh_nodes", on_device(bvh.nodes), "BvhNode")
+                           .add("bvh_blocks", on_device(bvh.blocks))
+                           .add("bvh_grid", bvh.grid)
+                           .add("triangles", on_device(triangles))
+                           .add("gather_points", points));
     std::vector<double> result;
     for (const GatherPoint& found : points.download()) result.push_back(static_cast<double>(found.weight));
     return result;

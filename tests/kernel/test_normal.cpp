@@ -42,7 +42,11 @@ std::vector<std::uint32_t> pack(const std::vector<glm::dvec3>& normals) {
     const Buffer<std::uint32_t> packed(test_device(), "packed", data.size());
     test_program("normal.cl")
         .kernel("pack_normals")
-        .launch(data.size(), input, body_buffer, packed, std::uint32_t(data.size()));
+        .launch(data.size(), Arguments()
+                                 .add("normals", input, "float4")
+                                 .add("bodies", body_buffer)
+                                 .add("packed", packed)
+                                 .add("n", std::uint32_t(data.size())));
     return packed.download();
 }
 
@@ -51,7 +55,11 @@ std::vector<Float4> components(const std::vector<std::uint32_t>& packed, std::ui
     const Buffer<Float4> normals(test_device(), "normals", packed.size());
     test_program("normal.cl")
         .kernel("packed_components")
-        .launch(packed.size() / 16, input, body, normals, std::uint32_t(packed.size()));
+        .launch(packed.size() / 16, Arguments()
+                                        .add("packed", input)
+                                        .add("body", body)
+                                        .add("normals", normals, "float4")
+                                        .add("n", std::uint32_t(packed.size())));
     return normals.download();
 }
 

@@ -1,6 +1,5 @@
 // Every shape of the ray kernels, over every kind of nodes, finds the same hits, and packets find what single rays do.
 #include <cmath>
-#include <cstring>
 #include <random>
 
 #include "host/render/ray_casting.hpp"
@@ -11,10 +10,6 @@
 using namespace stokes;
 
 namespace {
-
-bool same_bits(const std::vector<Hit>& a, const std::vector<Hit>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Hit)) == 0;
-}
 
 std::size_t count_hits(const std::vector<Hit>& hits) {
     std::size_t count = 0;
@@ -164,7 +159,7 @@ TEST_CASE("a shape that is asked for decides how nodes and kernels are made") {
         const auto n = static_cast<cl_uint>(rays.size());
         scene.kernels.program(device, "trace_rays.cl")
             .kernel("trace_closest_all")
-            .launch(n, n, scene.nodes, scene.blocks, scene.grid, in, out);
+            .launch(n, Arguments().add("n", n).add(scene.arguments()).add("rays", in).add("hits", out));
         CHECK(same_bits(expected, out.download()));
     }
     device.set_ray_shape(usual);

@@ -46,8 +46,15 @@ Light reradiated(const PassConstants& pass, const std::vector<Flux16>& rows, con
     const Buffer<cl_uint> histories(test_device(), "histories", n);
     test_program("reradiation.cl")
         .kernel("reradiate_often")
-        .launch(n, on_device(std::vector<PassConstants>{pass}), on_device(rows), on_device(std::vector<Flux16>{flux}),
-                on_device(u), times, n, out, histories);
+        .launch(n, Arguments()
+                       .add("pass", on_device(std::vector<PassConstants>{pass}))
+                       .add("rows", on_device(rows))
+                       .add("flux", on_device(std::vector<Flux16>{flux}))
+                       .add("u", on_device(u))
+                       .add("times", times)
+                       .add("n", n)
+                       .add("out", out)
+                       .add("histories", histories));
     return {out.download(), histories.download()};
 }
 

@@ -44,8 +44,14 @@ Buffer<Flux16> resample(const std::vector<PowerTable>& tables, const std::vector
     const Buffer<Flux16> out(device, "resampled tables", entries);
     Program(device, "resample_tables.cl")
         .kernel("resample_table")
-        .launch(entries, values, static_cast<std::uint32_t>(lambdas.count), static_cast<float>(lambdas.first),
-                static_cast<float>(lambdas.step), wavelengths, out, static_cast<std::uint32_t>(entries));
+        .launch(entries, Arguments()
+                             .add("full", values)
+                             .add("n_lambda", static_cast<std::uint32_t>(lambdas.count))
+                             .add("lambda_first_nm", static_cast<float>(lambdas.first))
+                             .add("lambda_step_nm", static_cast<float>(lambdas.step))
+                             .add("lambda_nm16", wavelengths)
+                             .add("table16", out)
+                             .add("count", static_cast<std::uint32_t>(entries)));
     device.finish();
     return out;
 }
@@ -123,7 +129,13 @@ TEST_CASE("a look-up is bilinear in distance and angle, held at the ends", "[res
     std::size_t offset = 0;
     for (const PowerTable& table : tables) {
         const TableShape shape = table_shape(table, offset);
-        look_up.launch(r_mm.size(), table16, shape, distances, angles, out, static_cast<std::uint32_t>(r_mm.size()));
+        look_up.launch(r_mm.size(), Arguments()
+                                        .add("table16", table16)
+                                        .add("shape", shape)
+                                        .add("r_mm", distances)
+                                        .add("theta_deg", angles)
+                                        .add("out", out)
+                                        .add("n", static_cast<std::uint32_t>(r_mm.size())));
         const std::vector<Flux16> found = out.download();
         double worst = 0.0;
         for (std::size_t i = 0; i < r_mm.size(); ++i)

@@ -87,11 +87,9 @@ Retraced retrace(const Events& e, std::uint32_t component, std::uint32_t seed, s
     for (const std::uint32_t g : {0u, 1u}) {
         groups.component[g] = g == 0 ? component : other;
         groups.first_exit[g] = g * count;
-        groups.first_slot[g] = component == other ? g * count : 0;
-        groups.slot_limit[g] = groups.first_slot[g] + count;
     }
-    std::vector<Flux16> fluorescence = e.first_map;
-    fluorescence.insert(fluorescence.end(), e.second_map.begin(), e.second_map.end());
+    std::vector<Flux16> exit_flux = e.first_map;
+    exit_flux.insert(exit_flux.end(), e.second_map.begin(), e.second_map.end());
     std::vector<MaterialRecord> materials = translucent_materials();
     if (exit_scale > 0.0f)
         for (MaterialRecord& m : materials) {
@@ -103,8 +101,16 @@ Retraced retrace(const Events& e, std::uint32_t component, std::uint32_t seed, s
     const Buffer<PathLedger> ledgers = on_device(e.ledgers);
     Program(test_device(), "retrace_subsurface.cl")
         .kernel("retrace_exits")
-        .launch(count, round, groups, pass_on_device(seed, 0, offset_mm), on_device(e.exits), on_device(materials),
-                on_device(fluorescence), on_device(e.first_map), on_device(e.second_map), rays, flux, ledgers);
+        .launch(count, Arguments()
+                           .add("round", round)
+                           .add("groups", groups)
+                           .add("pass", pass_on_device(seed, 0, offset_mm))
+                           .add("exits", on_device(e.exits))
+                           .add("exit_flux", on_device(exit_flux))
+                           .add("materials", on_device(materials))
+                           .add("rays", rays)
+                           .add("flux", flux)
+                           .add("ledgers", ledgers));
     return {rays.download(), flux.download(), ledgers.download()};
 }
 
@@ -232,7 +238,7 @@ namespace {
 // at each wavelength, the sum of what is stored where a surface was found.
 void check_branches(double kept_share) {
     CAPTURE(kept_share);
-    constexpr std::uint32_t paths = 1u << 15, each = 3, per_map = paths * each;
+    constexpr std::uint32_t paths = 1u << 15, each = 3;
     std::mt19937 generator(61);
     const Flux16 arriving = random_flux(generator, 0.5, 1.5);
     const std::vector<std::uint32_t> components = {STOKES_MAP_FLUORESCENCE, STOKES_MAP_FLUORESCENCE, STOKES_MAP_SINGLE,
@@ -257,19 +263,17 @@ void check_branches(double kept_share) {
     Events e;
     ExitGroups groups{};
     groups.count = 4;
-    std::array<std::vector<Flux16>, 3> maps;
+    std::vector<Flux16> exit_flux;
     for (std::size_t g = 0; g < 4; ++g) {
         groups.component[g] = components[g];
         groups.first_exit[g] = static_cast<std::uint32_t>(e.exits.size());
-        groups.first_slot[g] = static_cast<std::uint32_t>(maps[components[g]].size());
-        groups.slot_limit[g] = groups.first_slot[g] + per_map;
         const Flux16& event = g % 2 == 0 ? sent_on[g] : taken_up[g - 1];
         for (std::uint32_t i = 0; i < paths; ++i)
             for (std::size_t k = 0; k < each; ++k) {
                 const double tilt = 0.3 * double(g * each + k);
                 const glm::dvec3 normal(0.0, std::cos(tilt), std::sin(tilt));
                 e.exits.push_back(exit_at(normal, i, stored[g][k], event, g * each + k != missed, 0));
-                maps[components[g]].push_back(stored[g][k]);
+                exit_flux.push_back(stored[g][k]);
             }
     }
     EventRound round{};
@@ -282,9 +286,16 @@ void check_branches(double kept_share) {
     const Buffer<PathLedger> ledgers = on_device(std::vector<PathLedger>(paths, open_ledger(arriving)));
     Program(test_device(), "retrace_subsurface.cl")
         .kernel("retrace_exits")
-        .launch(paths, round, groups, pass_on_device(55, 0, offset_mm), on_device(e.exits),
-                on_device(translucent_materials()), on_device(maps[0]), on_device(maps[1]), on_device(maps[2]), rays,
-                flux, ledgers);
+        .launch(paths, Arguments()
+                           .add("round", round)
+                           .add("groups", groups)
+                           .add("pass", pass_on_device(55, 0, offset_mm))
+                           .add("exits", on_device(e.exits))
+                           .add("exit_flux", on_device(exit_flux))
+                           .add("materials", on_device(translucent_materials()))
+                           .add("rays", rays)
+                           .add("flux", flux)
+                           .add("ledgers", ledgers));
     const Retraced r{rays.download(), flux.download(), ledgers.download()};
     CHECK(worst_imbalance(r.ledgers, r.flux) < 1e-5);
 

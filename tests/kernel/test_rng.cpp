@@ -14,7 +14,9 @@ TEST_CASE("philox4x32-10 gives the published words", "[rng][tiny]") {
                                                  0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd,
                                                  0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1};
     const Buffer<std::uint32_t> input(test_device(), "counters", in), words(test_device(), "words", 12);
-    test_program("rng.cl").kernel("philox_words").launch(3, input, words, std::uint32_t{3});
+    test_program("rng.cl")
+        .kernel("philox_words")
+        .launch(3, Arguments().add("counters_and_keys", input).add("words", words).add("n", std::uint32_t{3}));
     REQUIRE(words.download() == expected);
 }
 
@@ -24,7 +26,8 @@ TEST_CASE("uniforms fill [0, 1) evenly and dimensions differ", "[rng]") {
     Kernel kernel = test_program("rng.cl").kernel("uniforms");
     std::vector<float> previous;
     for (std::uint32_t dimension : {0u, 1u}) {
-        kernel.launch(n, 7u, 3u, dimension, out, n);
+        kernel.launch(
+            n, Arguments().add("seed", 7u).add("pass", 3u).add("dimension", dimension).add("out", out).add("n", n));
         const std::vector<float> u = out.download();
         std::vector<double> bins(64, 0.0);
         for (float x : u) {

@@ -76,8 +76,14 @@ std::vector<float> draw(const PowerTable& table, float theta_deg, const std::vec
     const Buffer<float> distances(device, "distances", u.size());
     // Built once, and never released: a simulator's own statics may be gone when this file's are destroyed.
     static Kernel& kernel = *new Kernel(test_program("power_table.cl").kernel("draw_distances"));
-    kernel.launch(u.size(), mean_rows, cumulative_rows, sampler.shape, angles, uniforms, distances,
-                  static_cast<std::uint32_t>(u.size()));
+    kernel.launch(u.size(), Arguments()
+                                .add("mean_rows", mean_rows)
+                                .add("cumulative_rows", cumulative_rows)
+                                .add("shape", sampler.shape)
+                                .add("theta_deg", angles)
+                                .add("u", uniforms)
+                                .add("r_mm", distances)
+                                .add("n", static_cast<std::uint32_t>(u.size())));
     return distances.download();
 }
 

@@ -46,7 +46,13 @@ std::vector<Float4> normals() {
 TEST_CASE("tangent frames are orthonormal and right-handed", "[sampling][tiny]") {
     const std::vector<Float4> n = normals();
     const Buffer<Float4> s(test_device(), "s", n.size()), t(test_device(), "t", n.size());
-    test_program("sampling.cl").kernel("frames").launch(n.size(), on_device(n), s, t, std::uint32_t(n.size()));
+    test_program("sampling.cl")
+        .kernel("frames")
+        .launch(n.size(), Arguments()
+                              .add("normals", on_device(n), "float4")
+                              .add("s", s, "float4")
+                              .add("t", t, "float4")
+                              .add("n", std::uint32_t(n.size())));
     const std::vector<Float4> first = s.download(), second = t.download();
     for (std::size_t i = 0; i < n.size(); ++i) {
         CAPTURE(n[i].x, n[i].y, n[i].z);
@@ -69,7 +75,11 @@ TEST_CASE("directions are cosine-distributed about their normal", "[sampling]") 
     const Buffer<Float4> directions(test_device(), "directions", count);
     Kernel kernel = test_program("sampling.cl").kernel("cosine_directions");
     for (std::uint32_t k = 0; k < about.size(); ++k) {
-        kernel.launch(count, about[k], k, directions, count);
+        kernel.launch(count, Arguments()
+                                 .add("normal", about[k], "float4")
+                                 .add("seed", k)
+                                 .add("directions", directions, "float4")
+                                 .add("n", count));
         CosineHistogram histogram(32);
         for (const Float4& d : directions.download()) {
             REQUIRE(glm::length(vec(d)) == Approx(1.0).margin(1e-6));
@@ -88,7 +98,11 @@ TEST_CASE("the ends of the unit interval give directions above the surface", "[s
     const Float4 n = unit({0.3, 0.4, -0.8});
     test_program("sampling.cl")
         .kernel("directions_at")
-        .launch(u.size(), n, on_device(u), directions, std::uint32_t(u.size()));
+        .launch(u.size(), Arguments()
+                              .add("normal", n, "float4")
+                              .add("u", on_device(u), "float2")
+                              .add("directions", directions, "float4")
+                              .add("n", std::uint32_t(u.size())));
     const std::vector<Float4> d = directions.download();
     for (std::size_t i = 0; i < u.size(); ++i) {
         const double expected = std::sqrt(1.0 - static_cast<double>(u[i].x));
@@ -102,7 +116,9 @@ TEST_CASE("points are uniform over a triangle", "[sampling]") {
     constexpr std::uint32_t count = 1u << 16;
     constexpr int steps = 16;
     const Buffer<Float2> points(test_device(), "points", count);
-    test_program("sampling.cl").kernel("triangle_points").launch(count, 3u, points, count);
+    test_program("sampling.cl")
+        .kernel("triangle_points")
+        .launch(count, Arguments().add("seed", 3u).add("uv", points, "float2").add("n", count));
     std::vector<double> counts(steps * steps, 0.0);
     for (const Float2& p : points.download()) {
         REQUIRE(p.x >= 0.0f);
@@ -128,7 +144,8 @@ TEST_CASE("sixteen values are added up", "[sampling][tiny]") {
     const Buffer<float> out(test_device(), "sums", values.size());
     test_program("sampling.cl")
         .kernel("sums")
-        .launch(values.size(), on_device(values), out, std::uint32_t(values.size()));
+        .launch(values.size(),
+                Arguments().add("values", on_device(values)).add("out", out).add("n", std::uint32_t(values.size())));
     const std::vector<float> sums = out.download();
     for (std::size_t i = 0; i < values.size(); ++i)
         CHECK(static_cast<double>(sums[i]) == Approx(sum_of(values[i])).epsilon(5e-7));
@@ -144,7 +161,10 @@ TEST_CASE("points of the unit circle are sine and cosine", "[sampling][tiny]") {
     const Buffer<Float2> points(test_device(), "points", turns.size());
     test_program("sampling.cl")
         .kernel("circle_points")
-        .launch(turns.size(), on_device(turns), points, std::uint32_t(turns.size()));
+        .launch(turns.size(), Arguments()
+                                  .add("turns", on_device(turns))
+                                  .add("points", points, "float2")
+                                  .add("n", std::uint32_t(turns.size())));
     const std::vector<Float2> found = points.download();
     for (std::size_t i = 0; i < turns.size(); ++i) {
         const double angle = 2.0 * M_PI * double(turns[i]);

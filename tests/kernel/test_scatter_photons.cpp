@@ -52,9 +52,21 @@ Scattered scatter(const Arrivals& a, EventRound round, std::size_t slots, std::u
     const Buffer<Hit> hits = on_device(textured ? a.hits : std::vector<Hit>(a.flux.size(), Hit{}));
     Program(test_device(), "scatter_photons.cl")
         .kernel("scatter_diffuse")
-        .launch(round.count, round, pass_on_device(seed, 0, offset_mm), on_device(a.list), on_device(a.points), hits,
-                on_device(a.spectra), textures.records, textures.texels, textures.uv, rays, flux, ledgers, heads,
-                map_flux);
+        .launch(round.count, Arguments()
+                                 .add("round", round)
+                                 .add("pass", pass_on_device(seed, 0, offset_mm))
+                                 .add("event_lists", on_device(a.list))
+                                 .add("points", on_device(a.points))
+                                 .add("hits", hits)
+                                 .add("spectra", on_device(a.spectra))
+                                 .add("texture_records", textures.records)
+                                 .add("texels", textures.texels)
+                                 .add("texture_uv", textures.uv)
+                                 .add("rays", rays)
+                                 .add("flux", flux)
+                                 .add("ledgers", ledgers)
+                                 .add("map_heads", heads)
+                                 .add("map_flux", map_flux));
     return {rays.download(), flux.download(), ledgers.download(), heads.download(), map_flux.download()};
 }
 

@@ -26,7 +26,9 @@ Camera camera() {
 
 std::vector<std::uint32_t> rays_of_pixels(std::uint32_t w, std::uint32_t h) {
     const Buffer<std::uint32_t> rays(test_device(), "rays", std::size_t{w} * h);
-    test_program("tiles.cl").kernel("rays_of_pixels").launch(rays.size(), w, h, rays);
+    test_program("tiles.cl")
+        .kernel("rays_of_pixels")
+        .launch(rays.size(), Arguments().add("width", w).add("height", h).add("rays", rays));
     return rays.download();
 }
 
@@ -37,7 +39,9 @@ struct alignas(8) Uint2 {
 // What the middle of each pixel sees of the plane y = 0, in the order of the rays.
 std::vector<GatherPoint> points_on_floor(const CameraRecord& c, std::uint32_t maps, float weight) {
     const Buffer<Uint2> pixels(test_device(), "pixels", std::size_t{width} * height);
-    test_program("tiles.cl").kernel("pixels_of_rays").launch(pixels.size(), width, height, pixels);
+    test_program("tiles.cl")
+        .kernel("pixels_of_rays")
+        .launch(pixels.size(), Arguments().add("width", width).add("height", height).add("pixels", pixels, "uint2"));
     std::vector<GatherPoint> points;
     for (const Uint2& pixel : pixels.download()) {
         const float x = static_cast<float>(pixel.x) + 0.5f, y = static_cast<float>(pixel.y) + 0.5f;
@@ -72,9 +76,17 @@ std::vector<float> scores_of(const Photons& photons, std::uint32_t map, const st
     const Buffer<float> scores(test_device(), "scores", slots);
     Program(test_device(), "score_photons.cl")
         .kernel("score_photons")
-        .launch(slots, slots, map, make_camera_record(camera(), width, height),
-                on_device(std::vector<PassConstants>{pass}), on_device(photons.heads), on_device(photons.flux),
-                on_device(points), on_device(std::vector<Flux16>{reflectance}), no_textures(1).records, scores);
+        .launch(slots, Arguments()
+                           .add("slots", slots)
+                           .add("map", map)
+                           .add("camera", make_camera_record(camera(), width, height))
+                           .add("pass", on_device(std::vector<PassConstants>{pass}))
+                           .add("map_heads", on_device(photons.heads))
+                           .add("map_flux", on_device(photons.flux))
+                           .add("gather_points", on_device(points))
+                           .add("spectra", on_device(std::vector<Flux16>{reflectance}))
+                           .add("texture_records", no_textures(1).records)
+                           .add("scores", scores));
     return scores.download();
 }
 
@@ -102,11 +114,20 @@ TEST_CASE("every pixel's ray is found again", "[score_photons][tiny]") {
 
 TEST_CASE("paths are noted at the slots of their deposits", "[score_photons][tiny]") {
     const Buffer<std::uint32_t> slots = on_device(std::vector<std::uint32_t>(20, unwritten));
-    const std::vector<std::uint32_t> list = {7, 3, 9, 30};
+    const std::vector<std::uint32_t> list = {1, 2, 7, 3, 9, 30};
     // Slots 5 to 16, of which 15 and 16 are beyond the map.
-    Program(test_device(), "score_photons.cl").kernel("note_paths").launch(4, 4u, 3u, 5u, 15u, on_device(list), slots);
+    Program(test_device(), "score_photons.cl")
+        .kernel("note_paths")
+        .launch(4, Arguments()
+                       .add("count", 4u)
+                       .add("exits_each", 3u)
+                       .add("first_entry", 2u)
+                       .add("first_slot", 5u)
+                       .add("slot_limit", 15u)
+                       .add("event_lists", on_device(list))
+                       .add("path_of_slot", slots));
     const std::vector<std::uint32_t> written = slots.download();
-    for (std::uint32_t i = 0; i < 20; ++i) CHECK(written[i] == (i >= 5 && i < 15 ? list[(i - 5) / 3] : unwritten));
+    for (std::uint32_t i = 0; i < 20; ++i) CHECK(written[i] == (i >= 5 && i < 15 ? list[2 + (i - 5) / 3] : unwritten));
 }
 
 // The density estimate itself: in a disk of radius r the photon adds value/(pi r^2) to each pixel whose point is nearer

@@ -92,11 +92,10 @@ using namespace stokes;
     S(EventRound) F(EventRound, count) F(EventRound, event) F(EventRound, component) F(EventRound, sampler) \
         F(EventRound, first_exit) F(EventRound, first_slot) F(EventRound, slot_limit) \
         F(EventRound, second_exit) F(EventRound, last) F(EventRound, exits) F(EventRound, branches) \
-        F(EventRound, drawn_rows) \
+        F(EventRound, drawn_rows) F(EventRound, first_entry) F(EventRound, pad) \
     S(ExitGroups) F(ExitGroups, count) F(ExitGroups, component) F(ExitGroups, first_exit) \
-        F(ExitGroups, first_slot) F(ExitGroups, slot_limit) F(ExitGroups, pad) \
-    S(ListCounts) F(ListCounts, alive) F(ListCounts, diffuse) F(ListCounts, fluorescence) \
-        F(ListCounts, elastic) F(ListCounts, branches) \
+        F(ExitGroups, pad) \
+    S(ListCounts) F(ListCounts, alive) F(ListCounts, count) F(ListCounts, first) F(ListCounts, pad) \
     S(PhotonHead) F(PhotonHead, x) F(PhotonHead, y) F(PhotonHead, z) F(PhotonHead, normal) \
     S(TableShape) F(TableShape, offset) F(TableShape, row_count) F(TableShape, row_first) \
         F(TableShape, row_step) F(TableShape, r_count) F(TableShape, r_first) F(TableShape, r_step) \
@@ -162,7 +161,9 @@ std::string layout_kernel(const std::vector<Entry>& all) {
 TEST_CASE("shared structs have one layout on host and device", "[shared_layout][tiny]") {
     const std::vector<Entry> all = entries();
     const Buffer<std::uint32_t> out(test_device(), "layout", all.size());
-    Program::from_source(test_device(), "shared_layout.cl", layout_kernel(all)).kernel("report_layout").launch(1, out);
+    Program::from_source(test_device(), "shared_layout.cl", layout_kernel(all))
+        .kernel("report_layout")
+        .launch(1, Arguments("out", out));
     const std::vector<std::uint32_t> device = out.download();
     for (std::size_t i = 0; i < all.size(); ++i) {
         CAPTURE(all[i].name);

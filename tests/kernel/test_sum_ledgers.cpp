@@ -35,7 +35,11 @@ void check_sums(std::uint32_t count, std::uint32_t chunk_size) {
     const Buffer<LedgerSums> out = on_device(std::vector<LedgerSums>(chunks + 2, blank));
     Program(test_device(), "sum_ledgers.cl")
         .kernel("sum_ledgers")
-        .launch(chunks, count, chunk_size, on_device(ledgers), out);
+        .launch(chunks, Arguments()
+                            .add("count", count)
+                            .add("chunk_size", chunk_size)
+                            .add("ledgers", on_device(ledgers))
+                            .add("sums", out));
     const std::vector<LedgerSums> sums = out.download();
     for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
         std::vector<double> energy(8, 0.0), photons(8, 0.0);

@@ -29,10 +29,14 @@ struct Pictures {
         const Buffer<float> found(device, "found", hits.size());
         test_program("texture.cl")
             .kernel("luminances")
-            .launch(hits.size(), Buffer<std::uint32_t>(device, "materials", materials),
-                    Buffer<Hit>(device, "hits", hits), Buffer<TextureRecord>(device, "records", records),
-                    Buffer<float>(device, "texels", texels), Buffer<TriangleUv>(device, "uv", uv), found,
-                    static_cast<std::uint32_t>(hits.size()));
+            .launch(hits.size(), Arguments()
+                                     .add("materials", Buffer<std::uint32_t>(device, "materials", materials))
+                                     .add("hits", Buffer<Hit>(device, "hits", hits))
+                                     .add("records", Buffer<TextureRecord>(device, "records", records))
+                                     .add("texels", Buffer<float>(device, "texels", texels))
+                                     .add("uv", Buffer<TriangleUv>(device, "uv", uv))
+                                     .add("found", found)
+                                     .add("n", static_cast<std::uint32_t>(hits.size())));
         return found.download();
     }
 };
@@ -117,10 +121,13 @@ TEST_CASE("a texture blends its two reflectances by its luminance", "[textures][
     const Buffer<Flux16> found(device, "found", materials.size());
     test_program("texture.cl")
         .kernel("reflectances")
-        .launch(materials.size(), Buffer<std::uint32_t>(device, "materials", materials),
-                Buffer<float>(device, "luminances", luminances),
-                Buffer<TextureRecord>(device, "records", pictures.records), Buffer<Flux16>(device, "spectra", spectra),
-                found, static_cast<std::uint32_t>(materials.size()));
+        .launch(materials.size(), Arguments()
+                                      .add("materials", Buffer<std::uint32_t>(device, "materials", materials))
+                                      .add("luminances", Buffer<float>(device, "luminances", luminances))
+                                      .add("records", Buffer<TextureRecord>(device, "records", pictures.records))
+                                      .add("spectra", Buffer<Flux16>(device, "spectra", spectra))
+                                      .add("found", found)
+                                      .add("n", static_cast<std::uint32_t>(materials.size())));
     const std::vector<Flux16> blends = found.download();
     for (std::size_t i = 0; i < blends.size(); ++i)
         for (std::size_t k = 0; k < 16; ++k) CHECK(blends[i].v[k] == Approx(expected[i].v[k]).margin(1e-6));

@@ -1,7 +1,6 @@
 // trace_closest and trace_any against a plain double-precision search over all triangles.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -44,10 +43,6 @@ int count_wrong(const std::vector<Triangle>& triangles, const std::vector<Ray>& 
 std::size_t count_hits(const std::vector<Hit>& hits) {
     return static_cast<std::size_t>(
         std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.triangle != STOKES_NONE; }));
-}
-
-bool same_bits(const std::vector<Hit>& a, const std::vector<Hit>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Hit)) == 0;
 }
 
 // A fifth of the rays keeps one direction component, another fifth loses two.
@@ -257,8 +252,12 @@ TEST_CASE("a list traces its rays and leaves the others' hits alone", "[tiny]") 
     const Hit untouched{-5.0f, -5.0f, -5.0f, 12345u};
     const Buffer<Hit> out(test_device(), "hits", std::vector<Hit>(rays.size(), untouched));
     scene.program.kernel("trace_closest")
-        .launch(list.size(), indices, static_cast<cl_uint>(list.size()), scene.nodes, scene.blocks, scene.bvh.grid, in,
-                out);
+        .launch(list.size(), Arguments()
+                                 .add("list", indices)
+                                 .add("n", static_cast<cl_uint>(list.size()))
+                                 .add(scene.arguments())
+                                 .add("rays", in)
+                                 .add("hits", out));
     std::vector<Hit> expected(rays.size(), untouched);
     const auto all = scene.closest(rays);
     for (const cl_uint i : list) expected[i] = all[i];

@@ -62,13 +62,15 @@ class Bench {
         lights[0].kind = STOKES_LIGHT_SURFACE;
         const Device& device = test_device();
         rays_ = RayScene(device, triangles_);
-        scene_ = {{device, "triangles", triangles_},
-                  {device, "shapes", shapes},
-                  {device, "materials", materials},
-                  {device, "lights", lights},
-                  {device, "spectra", std::vector<Flux16>(materials.size())},
-                  {device, "emitted", std::vector<Flux16>{light}},
-                  no_textures(materials.size())};
+        scene_ = rays_.arguments()
+                     .add("triangles", Buffer<Triangle>(device, "triangles", triangles_))
+                     .add("shapes", Buffer<ShapeRecord>(device, "shapes", shapes))
+                     .add("materials", Buffer<MaterialRecord>(device, "materials", materials))
+                     .add("light_count", 1u)
+                     .add("lights", Buffer<LightRecord>(device, "lights", lights))
+                     .add("light_areas", Buffer<float>(device, "areas", 1))
+                     .add("light_radiance", Buffer<Flux16>(device, "emitted", std::vector<Flux16>{light}))
+                     .add(no_textures(materials.size()).arguments());
     }
 
     Seen see(const std::vector<Ray>& rays, std::uint32_t pass_index = 0) {
@@ -88,15 +90,15 @@ class Bench {
         const Buffer<Ray> ray_buffer(device, "rays", rays);
         const Buffer<Hit> hits(device, "hits", rays.size());
         const Buffer<FilmValue> film(device, "film", std::vector<FilmValue>(4 * rays.size(), FilmValue{0, 0, 0, 0}));
-        rays_.kernels.program(device, "trace_rays.cl")
-            .kernel("trace_closest_all")
-            .launch(rays.size(), camera.width, rays_.nodes, rays_.blocks, rays_.grid, ray_buffer, hits);
+        const Arguments common = Arguments("pass", pass_buffer).add(scene_);
+        const Arguments own =
+            Arguments("camera", camera).add("rays", ray_buffer).add("hits", hits).add("n", camera.width);
+        rays_.kernels.program(device, "trace_rays.cl").kernel("trace_closest_all").launch(rays.size(), common, own);
         rays_.kernels.program(device, "trace_reflections.cl")
             .kernel("trace_reflections")
-            .launch(rays.size(), camera, pass_buffer, rays_.nodes, rays_.blocks, rays_.grid, scene_.triangles,
-                    scene_.shapes, scene_.materials, ray_buffer, hits);
+            .launch(rays.size(), common, own);
         Gather gather(device, rays_.kernels, camera);
-        gather.collect_points(scene_, pass_buffer, ray_buffer, hits, film);
+        gather.collect_points(common, ray_buffer, hits, film);
         Seen seen{ray_buffer.download(), hits.download(), gather.points().download(), film.download()};
         seen.emission.erase(seen.emission.begin(), seen.emission.begin() + STOKES_MAP_SURFACE * camera.width);
         return seen;
@@ -111,7 +113,7 @@ class Bench {
   private:
     std::vector<Triangle> triangles_;
     RayScene rays_;
-    GatherScene scene_;
+    Arguments scene_;
 };
 
 // Rays from one point above the plane y = 0 that meet it near the origin at this cosine, from azimuths about a right

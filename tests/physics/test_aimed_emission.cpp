@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "host/render/renderer.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/statistics.hpp"

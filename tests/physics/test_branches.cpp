@@ -5,11 +5,8 @@
 #include <vector>
 
 #include "host/render/emission_trial.hpp"
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
-#include "tests/support/known_light.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/statistics.hpp"
 #include "tests/support/test_scenes.hpp"
 
@@ -31,10 +28,9 @@ struct Stored {
 
 constexpr std::array<double, 3> distances_mm = {2.0, 4.0, 12.0};
 
-void add_maps(const PhotonMaps& maps, Stored& stored) {
+void add_maps(const PhotonPasses& passes, Stored& stored) {
     for (std::size_t m = 0; m < 3; ++m) {
-        const std::vector<PhotonHead> heads = maps[m].heads().download(maps[m].used());
-        const std::vector<Flux16> flux = maps[m].flux().download(maps[m].used());
+        const auto [heads, flux] = passes.deposits(m);
         std::array<double, STOKES_WAVELENGTHS> sums{};
         std::array<double, 3> within{};
         for (std::size_t i = 0; i < heads.size(); ++i) {
@@ -57,24 +53,17 @@ Stored measured(Scene scene, Branches branches, int exits, std::uint32_t seed, b
     scene.render.branches = branches;
     scene.render.exits = exits;
     scene.render.seed = seed;
-    const Device& device = test_device();
-    const DeviceScene on_device(device, scene);
-    PassMaker pass(device, scene, on_device);
-    if (even) pass.set_emission(EmissionCells::stratified(emitting_lights(scene, on_device), photons));
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
+    PhotonPasses passes(scene, photons);
+    if (even) passes.pass.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene, passes.on_device), photons));
     PassWavelengths wavelengths = pass_wavelengths(RenderSettings{}, 0);
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) wavelengths.set[k] = 330 + 20 * static_cast<int>(k);
     Stored stored;
     std::array<double, 8> energy{}, photon_sums{};
     for (std::uint32_t batch = 0; batch < batches; ++batch) {
-        pass.make(wavelengths, batch, photons);
-        for (PhotonMap& map : maps) map.clear();
-        const PhotonAccount account = tracer.trace(on_device, pass.buffers(), photons, maps);
+        const PhotonAccount account = passes.trace(wavelengths, batch);
         CHECK(account.refused_slots == 0);
         CHECK(account.fates[STOKES_FATE_OVERFLOW] + account.fates[STOKES_FATE_EVENT_LIMIT] == 0);
-        add_maps(maps, stored);
+        add_maps(passes, stored);
         for (std::size_t k = 0; k < energy.size(); ++k) {
             energy[k] += account.energy[k];
             photon_sums[k] += account.photons[k];

@@ -2,11 +2,9 @@
 #include <cmath>
 #include <vector>
 
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/half_space.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/statistics.hpp"
 #include "tests/support/test_scenes.hpp"
 
@@ -59,7 +57,6 @@ struct Case {
 // maps is that of exact transport theory at every wavelength. Batches of photons give the standard error; in all about
 // 260 comparisons at 4 standard errors, wrong once in 60 choices of the seed.
 TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[conserving]") {
-    const Device& device = test_device();
     constexpr Branches roulette = Branches::roulette, both = Branches::both;
     for (const Case& c : {Case{0.4, 0.0, false, 1.0, roulette, 1}, Case{0.7, 60.0, false, 60.0, roulette, 1},
                           Case{0.4, 45.0, true, 30.0, roulette, 1}, Case{0.4, 0.0, false, 1.0, both, 1},
@@ -70,25 +67,19 @@ TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[c
         scene.render.exits = c.exits;
         scene.fluorophores[0].quantum_yield = 0.8;
         scene.media[0].sigma_a = scene.media[0].sigma_a.scaled(c.albedo_scale);
-        const DeviceScene on_device(device, scene);
-        PassMaker pass(device, scene, on_device);
         const std::uint32_t batches = 20, photons = 32768;
-        PhotonTracer tracer(device, on_device.rays.kernels, photons);
-        PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                        PhotonMap(device, "surface", 16)};
+        PhotonPasses passes(scene, photons);
         const PassWavelengths wavelengths = pass_wavelengths(scene.render, 3);
         std::array<std::array<Sample, STOKES_WAVELENGTHS>, 3> stored;
         double reflected = 0.0, missed = 0.0;
         for (std::uint32_t batch = 0; batch < batches; ++batch) {
-            pass.make(wavelengths, batch, photons);
-            for (PhotonMap& map : maps) map.clear();
-            const PhotonAccount account = tracer.trace(on_device, pass.buffers(), photons, maps);
+            const PhotonAccount account = passes.trace(wavelengths, batch);
             reflected += static_cast<double>(account.reflections);
             missed += account.energy[4] / account.energy[0];
             CHECK(account.refused_slots == 0);
             for (std::size_t m = 0; m < 3; ++m) {
                 std::array<double, STOKES_WAVELENGTHS> sum{};
-                for (const Flux16& flux : maps[m].flux().download(maps[m].used()))
+                for (const Flux16& flux : passes.flux(m))
                     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += static_cast<double>(flux.v[k]);
                 for (std::size_t k = 0; k < sum.size(); ++k) stored[m][k].add(sum[k]);
             }

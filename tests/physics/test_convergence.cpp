@@ -1,6 +1,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
 
@@ -13,8 +14,7 @@ constexpr int pixels = 16;
 // with curvature for the radius to blur. The range is sixteen integers, so that all passes have the same
 // wavelengths.
 Scene ball_over_floor(std::uint32_t seed, Direct direct) {
-    Scene scene;
-    scene.file = "convergence";
+    Scene scene = empty_scene("convergence");
     scene.materials = {diffuse_material(reflectance), Material{}};
     add_shape(scene, "floor", 0, make_rectangle(2000.0, 2000.0));
     add_shape(scene, "lamp", 1, moved(make_sphere(4.0, 64), {0.0, height_mm, 0.0})).light = 0;

@@ -3,6 +3,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
 
@@ -15,9 +16,7 @@ const Spectrum sloping = {{300.0, 780.0}, {0.5, 2.0}, Outside::zero};
 
 // A diffuse floor; its interior, 40 mm wide, is seen from above.
 Scene floor_scene() {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
-    scene.file = "floor";
+    Scene scene = empty_scene("floor");
     scene.materials = {diffuse_material(reflectance), Material{}};
     add_shape(scene, "floor", 0, make_rectangle(1000.0, 1000.0));
     scene.film = {8, 8, {}};

@@ -2,11 +2,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
@@ -45,28 +43,15 @@ glm::dvec3 block_mean(const FilmImage& image, int component, int left, int top, 
     return sum / static_cast<double>(edge * edge);
 }
 
-// Photons of a pass, as they are stored.
 struct Stored {
     PhotonAccount account;
-    std::array<std::vector<PhotonHead>, STOKES_MAP_COUNT> heads;
-    std::array<std::vector<Flux16>, STOKES_MAP_COUNT> flux;
+    std::array<Deposits, STOKES_MAP_COUNT> maps;
 };
 
 Stored trace(const Scene& scene) {
-    const Device& device = test_device();
-    const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-    const DeviceScene on_device(device, scene);
-    PassMaker pass(device, scene, on_device);
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
-    pass.make(3, photons);
-    Stored stored;
-    stored.account = tracer.trace(on_device, pass.buffers(), photons, maps);
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        stored.heads[m] = maps[m].heads().download(maps[m].used());
-        stored.flux[m] = maps[m].flux().download(maps[m].used());
-    }
+    PhotonPasses passes(scene);
+    Stored stored{passes.trace(3), {}};
+    for (std::size_t m = 0; m < stored.maps.size(); ++m) stored.maps[m] = passes.deposits(m);
     return stored;
 }
 
@@ -123,7 +108,7 @@ TEST_CASE("rays and photons bring the same direct light in the mean", "[direct_l
 // By rays the surface map lacks what is in it after the first round of events, and that alone.
 TEST_CASE("photons are the same, but for those that are not stored", "[direct_light]") {
     for (const Transport transport : {Transport::conserving, Transport::paper, Transport::walk}) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)]);
+        CAPTURE(word_of(transport));
         Scene scene = mixed_scene(Direct::photons);
         scene.render.photons_per_pass = 8192;
         scene.render.transport = transport;
@@ -132,14 +117,15 @@ TEST_CASE("photons are the same, but for those that are not stored", "[direct_li
         const Stored rest = trace(scene);
         for (std::size_t m = 0; m < STOKES_MAP_COUNT; ++m) {
             CAPTURE(m);
-            CHECK(same_end(all.heads[m], rest.heads[m]));
-            CHECK(same_end(all.flux[m], rest.flux[m]));
-            if (m != STOKES_MAP_SURFACE) CHECK(all.heads[m].size() == rest.heads[m].size());
+            CHECK(same_end(all.maps[m].heads, rest.maps[m].heads));
+            CHECK(same_end(all.maps[m].flux, rest.maps[m].flux));
+            if (m != STOKES_MAP_SURFACE) CHECK(all.maps[m].heads.size() == rest.maps[m].heads.size());
         }
-        const std::size_t direct = all.heads[STOKES_MAP_SURFACE].size() - rest.heads[STOKES_MAP_SURFACE].size();
+        const std::size_t direct =
+            all.maps[STOKES_MAP_SURFACE].heads.size() - rest.maps[STOKES_MAP_SURFACE].heads.size();
         CHECK(direct > 1000);
         CHECK(direct < 8192);
-        CHECK(rest.heads[STOKES_MAP_SURFACE].size() > 500);
+        CHECK(rest.maps[STOKES_MAP_SURFACE].heads.size() > 500);
         CHECK(all.account.deposits - rest.account.deposits == direct);
         CHECK(all.account.fates == rest.account.fates);
         CHECK(all.account.rays == rest.account.rays);
@@ -149,15 +135,14 @@ TEST_CASE("photons are the same, but for those that are not stored", "[direct_li
         }
         double lacking = 0.0;
         for (std::size_t i = 0; i < direct; ++i)
-            for (const float v : all.flux[STOKES_MAP_SURFACE][i].v) lacking += static_cast<double>(v);
+            for (const float v : all.maps[STOKES_MAP_SURFACE].flux[i].v) lacking += static_cast<double>(v);
         CHECK(all.account.energy[7] - rest.account.energy[7] == Approx(lacking).epsilon(1e-4));
     }
 }
 
 // Nothing that a convex body reflects falls on it again.
 TEST_CASE("where nothing is lit but by lights, the surface map is empty", "[direct_light]") {
-    Scene scene;
-    scene.file = "ball";
+    Scene scene = empty_scene("ball");
     scene.materials = {diffuse_material(0.6)};
     add_shape(scene, "ball", 0, make_sphere(10.0, 48));
     scene.lights = {disk_beam({0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, 30.0, Spectrum::constant(1.0))};
@@ -166,10 +151,10 @@ TEST_CASE("where nothing is lit but by lights, the surface map is empty", "[dire
     scene.render.photons_per_pass = 4096;
     scene.render.direct = Direct::rays;
     const Stored stored = trace(scene);
-    for (const auto& heads : stored.heads) CHECK(heads.empty());
+    for (const Deposits& map : stored.maps) CHECK(map.heads.empty());
     CHECK(stored.account.deposits == 0);
     CHECK(stored.account.energy[7] == 0.0);
     CHECK(stored.account.energy[0] > 0.0);
     scene.render.direct = Direct::photons;
-    CHECK(trace(scene).heads[STOKES_MAP_SURFACE].size() > 100);
+    CHECK(trace(scene).maps[STOKES_MAP_SURFACE].heads.size() > 100);
 }

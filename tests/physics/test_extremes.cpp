@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "host/render/renderer.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/test_scenes.hpp"
@@ -26,9 +26,7 @@ TEST_CASE("a lamp of one wavelength gives about the same first radius as a white
 TEST_CASE("light that grows without bound is cut and counted", "[overflow]") {
     Scene scene = slab_scene(0.0, 0.0);
     scene.media[0].sigma_s = Spectrum::constant(12.0);
-    Mesh mesh = make_sphere(30.0, 32);
-    for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
-    scene.shapes[0].mesh = mesh;
+    scene.shapes[0].mesh = turned_over(make_sphere(30.0, 32));
     std::get<DiskBeam>(scene.lights[0].kind).position_mm = {0.0, 5.0, 0.0};
     scene.camera.position_mm = {0.0, 0.0, 10.0};
     scene.camera.target_mm = {0.0, -20.0, 0.0};

@@ -9,6 +9,7 @@
 #include "host/subsurface/quadrature.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
+#include "tests/support/half_space.hpp"
 #include "tests/support/statistics.hpp"
 
 using namespace stokes;
@@ -149,20 +150,13 @@ void compare_with_direct_walk(std::size_t photons) {
 // PHYSICS section 4: the first collision at depth t mu, density exp(-t); what leaves is u0 + u1. By the
 // table's rows, linear in depth between them as the renderer reads them.
 TEST_CASE("the table's totals give the exact reflectance", "[green_table]") {
-    struct {
-        double albedo, mu, expected;
-    } const cases[] = {{0.9, 1.0, 0.4149475},
-                       {0.9, 0.5, 0.5079389},
-                       {0.5, 1.0, 0.1152259},
-                       {0.99, 1.0, 0.7527207},
-                       {0.998, 0.5, 0.9133801}};
     const GreenTable table = green_table_for(test_device(), 1.0);
     const GreenTotals totals(table);
     const TableShape shape = green_medium_shape(table, 0.9, 1.9);
     std::vector<double> depths;
     for (std::size_t i = 0; i < shape.row_count; ++i)
         depths.push_back(PassRows::node(shape.row_first, shape.row_step, i) * kSigma);
-    for (const auto& c : cases) {
+    for (const auto& c : chandrasekhar) {
         CAPTURE(c.albedo, c.mu);
         double sum = 0.0;
         for (std::size_t i = 0; i + 1 < depths.size(); ++i) {

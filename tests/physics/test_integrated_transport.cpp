@@ -1,13 +1,11 @@
 #include <array>
 #include <cmath>
 
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
 #include "host/subsurface/paper_transport.hpp"
 #include "host/subsurface/power_table.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/statistics.hpp"
 #include "tests/support/test_scenes.hpp"
 
@@ -46,31 +44,6 @@ std::array<double, 16> mean_power(std::uint32_t component, const Medium& medium,
             result[k] += density * power_of(component, medium, double(lambda_nm[k]), r, theta_deg);
     }
     for (double& v : result) v /= total;
-    return result;
-}
-
-// A pass's photons, one event each on a flat slab.
-struct Stored {
-    std::array<std::array<Sample, 16>, 3> flux;  // [map][wavelength], over all deposits
-    PassConstants constants{};
-    PhotonAccount account;
-};
-
-Stored stored_on_slab(const Scene& scene) {
-    const Device& device = test_device();
-    const DeviceScene on_device(device, scene);
-    PassMaker pass(device, scene, on_device);
-    const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-    pass.make(3, photons);
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
-    Stored result;
-    result.account = tracer.trace(on_device, pass.buffers(), photons, maps);
-    result.constants = pass.spectra().constants;
-    for (std::size_t m = 0; m < 3; ++m)
-        for (const Flux16& flux : maps[m].flux().download(maps[m].used()))
-            for (std::size_t k = 0; k < 16; ++k) result.flux[m][k].add(static_cast<double>(flux.v[k]));
     return result;
 }
 
@@ -122,14 +95,16 @@ double deviate(const Sample& a, const Sample& b) {
 TEST_CASE("photons that integrate their power store what eq. 3-5 say", "[integrated]") {
     for (const double angle_deg : {0.0, 50.0}) {
         const Scene scene = without_tables(slab_scene(0.4, angle_deg));
-        const Stored stored = stored_on_slab(scene);
-        CHECK(stored.account.missed_exits == 0);
-        CHECK(stored.account.refused_slots == 0);
+        PhotonPasses passes(scene);
+        const PhotonAccount account = passes.trace(3);
+        CHECK(account.missed_exits == 0);
+        CHECK(account.refused_slots == 0);
         const double photons = static_cast<double>(scene.render.photons_per_pass);
         const double theta_deg = std::asin(std::sin(angle_deg * M_PI / 180.0) / 1.5) * 180.0 / M_PI;
-        const PassConstants& pass = stored.constants;
+        const PassConstants& pass = passes.constants();
         for (const std::uint32_t component : {STOKES_MAP_FLUORESCENCE, STOKES_MAP_SINGLE, STOKES_MAP_MULTIPLE}) {
             const auto power = mean_power(component, scene.media[0], theta_deg, pass.lambda_nm);
+            const std::vector<Flux16> flux = passes.flux(component);
             for (std::size_t i = 0; i < 16; ++i) {
                 const auto lambda = [&](std::size_t k) { return static_cast<double>(pass.lambda_nm[k]); };
                 double start = scene.lights[0].flux.at(lambda(i));
@@ -141,7 +116,8 @@ TEST_CASE("photons that integrate their power store what eq. 3-5 say", "[integra
                                  scene.fluorophores[0].emission.at(lambda(i)) * pair_weight_nm(300, 780);
                 }
                 const double expected = start * power[i] * (component == STOKES_MAP_FLUORESCENCE ? 0.4 : 0.6);
-                const Sample& sample = stored.flux[component][i];
+                Sample sample;
+                for (const Flux16& f : flux) sample.add(static_cast<double>(f.v[i]));
                 // Binomial number of events times the spread of their flux.
                 const double share = static_cast<double>(sample.count()) / photons, mean = sample.mean() * share;
                 const double second = (sample.variance() + sample.mean() * sample.mean()) * share;
@@ -210,9 +186,4 @@ TEST_CASE("without tables none is made, and the first radius is the same within 
     CHECK(device.stage_times().count("sample_exits") == 0);
     CHECK(device.stage_times().count("integrate_power") == 1);
     CHECK(without.first_radius() == Approx(with.first_radius()).epsilon(0.05));
-    const DeviceScene on_device(device, without_tables(scene));
-    CHECK(on_device.tables.entries == 0);
-    CHECK(on_device.tables.values.size() == 0);
-    REQUIRE(on_device.integrated);
-    CHECK(on_device.integrated->mixtures.size() == scene.media.size());
 }

@@ -15,9 +15,7 @@ const Spectrum one = {{300.0, 780.0}, {1.0, 1.0}, Outside::zero};
 constexpr double radius_mm = 4.0;
 
 Scene dark_scene(Radii radii) {
-    Scene scene;
-    scene.file = "leaks";
-    scene.render.wavelengths = Wavelengths::uniform;
+    Scene scene = empty_scene("leaks");
     scene.render.photons_per_pass = 20000;
     scene.render.radius_mm = radius_mm;
     scene.render.radii = radii;

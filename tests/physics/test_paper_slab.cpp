@@ -1,12 +1,9 @@
 #include <array>
 #include <cmath>
 
-#include "host/render/pass_spectra.hpp"
-#include "host/render/photon_tracer.hpp"
 #include "host/subsurface/power_table.hpp"
-#include "kernels/shared/hash_grid.h"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/statistics.hpp"
 #include "tests/support/test_scenes.hpp"
 
@@ -55,29 +52,12 @@ std::array<double, 16> mean_kept(const PowerTable& table, double theta_deg, cons
 // A beam on a wide flat slab: each photon has one event and then escapes, so that the flux in the maps has a closed
 // expectation: c * re-radiated flux * E[T_F], (1 - c) * flux * E[T_S] and the same with T_M (PHYSICS section 3).
 TEST_CASE("the maps of a flat slab hold the flux that the paper's model says", "[subsurface]") {
-    const Device& device = test_device();
     for (const double angle_deg : {0.0, 50.0}) {
         const Scene scene = slab_scene(0.4, angle_deg);
-        const DeviceScene on_device(device, scene);
-        const std::uint32_t photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-        const PassSpectra spectra = make_pass_spectra(scene, {1.0}, on_device.light_spread, 3, photons);
-        PassConstants constants = spectra.constants;
-        constants.offset_mm = on_device.offset_mm;
-        const PassBuffers pass{
-            Buffer<PassConstants>(device, "constants", {constants}), Buffer<Flux16>(device, "rows", spectra.rows),
-            Buffer<Flux16>(device, "flux", spectra.photon_flux), Buffer<Flux16>(device, "radiance", spectra.radiance)};
-        const Buffer<float> lambda(device, "lambda", 16);
-        lambda.upload(constants.lambda_nm, 16);
-        const DeviceTables& tables = on_device.tables;
-        Program(device, "resample_tables.cl")
-            .kernel("resample_table")
-            .launch(tables.entries, tables.values, static_cast<std::uint32_t>(tables.wavelengths.count),
-                    static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step), lambda,
-                    tables.at_wavelengths, tables.entries);
-        PhotonTracer tracer(device, on_device.rays.kernels, photons);
-        PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                        PhotonMap(device, "surface", 16)};  // small: they have to grow
-        const PhotonAccount account = tracer.trace(on_device, pass, photons, maps);
+        PhotonPasses passes(scene);
+        const std::uint32_t photons = passes.photons;
+        const PhotonAccount account = passes.trace(3);
+        const PhotonMaps& maps = passes.maps();
         CHECK(account.missed_exits == 0);
         CHECK(account.refused_slots == 0);
         CHECK(account.fates[STOKES_FATE_ESCAPED] + account.fates[STOKES_FATE_ABSORBED] == photons);
@@ -85,7 +65,7 @@ TEST_CASE("the maps of a flat slab hold the flux that the paper's model says", "
         CHECK(maps[0].used() + maps[1].used() == photons);
 
         WavelengthSet set;
-        for (std::size_t i = 0; i < 16; ++i) set[i] = static_cast<int>(constants.lambda_nm[i]);
+        for (std::size_t i = 0; i < 16; ++i) set[i] = static_cast<int>(passes.constants().lambda_nm[i]);
         const double theta_deg = std::asin(std::sin(angle_deg * M_PI / 180.0) / 1.5) * 180.0 / M_PI;
         const Medium& medium = scene.media[0];
         const MediumSpectra ms{medium.name, medium.sigma_s, medium.sigma_a, medium.eta, medium.dipole_eta};
@@ -93,7 +73,7 @@ TEST_CASE("the maps of a flat slab hold the flux that the paper's model says", "
                                                  make_multiple_table(ms)};
         for (std::size_t component = 0; component < 3; ++component) {
             const std::array<double, 16> kept = mean_kept(power[component], theta_deg, set);
-            const auto flux = maps[component].flux().download(maps[component].used());
+            const std::vector<Flux16> flux = passes.flux(component);
             for (std::size_t i = 0; i < 16; ++i) {
                 double start = scene.lights[0].flux.at(set[i]);
                 if (component == STOKES_MAP_FLUORESCENCE) {

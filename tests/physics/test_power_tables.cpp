@@ -10,8 +10,6 @@ using namespace stokes;
 
 namespace {
 
-const double pi = std::acos(-1.0);
-
 // The marble of the paper's scenes: Jensen et al. 2001, scattering halved, linear between the primaries'
 // wavelengths.
 MediumSpectra marble() {
@@ -41,7 +39,7 @@ double refine(const std::function<double(double)>& f, double a, double b, double
 // Adaptive Simpson of the integrals exactly as printed, over t, split where s(t) is smallest; `offset` is
 // taken out of the exponent to stay within the range of double. Shares nothing with the product's formulas.
 double integral_over_t(double sigma_t, double r, double theta_deg, bool path_in_exponent, double offset) {
-    const double sine = std::sin(theta_deg * pi / 180.0);
+    const double sine = std::sin(theta_deg * M_PI / 180.0);
     const auto f = [&](double t) {
         const double s = std::sqrt(r * r + t * t - 2.0 * r * t * sine);
         return std::exp(-sigma_t * ((path_in_exponent ? t + s : s) - offset));
@@ -86,7 +84,7 @@ TEST_CASE("fluorescence and single scattering agree with adaptive Simpson of eq.
                 const double r_mm = 0.1 * static_cast<double>(r), theta_deg = 0.9 * static_cast<double>(theta);
                 const double sigma_s = fluorescence.medium.sigma_s[lambda];
                 const double sigma_t = sigma_s + fluorescence.medium.sigma_a[lambda];
-                const double nearest = r_mm * std::cos(theta_deg * pi / 180.0);  // smallest s(t)
+                const double nearest = r_mm * std::cos(theta_deg * M_PI / 180.0);  // smallest s(t)
                 CAPTURE(r_mm, theta_deg, sigma_t);
                 const double f = integral_over_t(sigma_t, r_mm, theta_deg, false, nearest);
                 CHECK(value_at(fluorescence, r, theta, lambda) ==
@@ -94,7 +92,7 @@ TEST_CASE("fluorescence and single scattering agree with adaptive Simpson of eq.
                 // t + s(t) is at least r.
                 const double s = integral_over_t(sigma_t, r_mm, theta_deg, true, r_mm);
                 CHECK(value_at(single, r, theta, lambda) ==
-                      Approx(sigma_s / (4.0 * pi) * s * std::exp(-sigma_t * r_mm)).epsilon(1e-7));
+                      Approx(sigma_s / (4.0 * M_PI) * s * std::exp(-sigma_t * r_mm)).epsilon(1e-7));
             }
 }
 
@@ -103,12 +101,12 @@ TEST_CASE("thin and dense media agree with adaptive Simpson too", "[power_tables
         for (double r_mm : {0.0, 0.1, 1.0, 9.9})
             for (double theta_deg : {0.0, 45.0, 88.2, 89.1}) {
                 const RefractionAngle theta = RefractionAngle::from_degrees(theta_deg);
-                const double nearest = r_mm * std::cos(theta_deg * pi / 180.0);
+                const double nearest = r_mm * std::cos(theta_deg * M_PI / 180.0);
                 CAPTURE(r_mm, theta_deg, sigma_t);
                 CHECK(fluorescence_power(sigma_t, r_mm, theta) ==
                       Approx(integral_over_t(sigma_t, r_mm, theta_deg, false, nearest) * std::exp(-sigma_t * nearest))
                           .epsilon(1e-6));
-                CHECK(single_power(4.0 * pi, sigma_t, r_mm, theta) ==
+                CHECK(single_power(4.0 * M_PI, sigma_t, r_mm, theta) ==
                       Approx(integral_over_t(sigma_t, r_mm, theta_deg, true, r_mm) * std::exp(-sigma_t * r_mm))
                           .epsilon(1e-6));
             }
@@ -128,7 +126,7 @@ TEST_CASE("at 90 degrees the integrals are elementary", "[power_tables]") {
             // s(t) = |r - t|
             CHECK(fluorescence_power(sigma_t, r_mm, grazing) ==
                   Approx((2.0 - std::exp(-sigma_t * r_mm)) / sigma_t).epsilon(1e-12));
-            CHECK(single_power(4.0 * pi, sigma_t, r_mm, grazing) ==
+            CHECK(single_power(4.0 * M_PI, sigma_t, r_mm, grazing) ==
                   Approx((r_mm + 0.5 / sigma_t) * std::exp(-sigma_t * r_mm)).epsilon(1e-12));
         }
 }
@@ -157,9 +155,9 @@ TEST_CASE("multiple scattering is the dipole of eq. 5 as printed", "[power_table
 
 TEST_CASE("without absorption the dipole is the difference of two inverse distances", "[power_tables]") {
     // sigma_tr = 0; sigma_t = 1: z_r = 1, z_v = 7/3, 1/(4 pi D) = 3/(4 pi).
-    CHECK(multiple_power(0.0, 1.0, 1.0, 0.0) == Approx(3.0 / (4.0 * pi) * (1.0 - 3.0 / 7.0)).epsilon(1e-14));
+    CHECK(multiple_power(0.0, 1.0, 1.0, 0.0) == Approx(3.0 / (4.0 * M_PI) * (1.0 - 3.0 / 7.0)).epsilon(1e-14));
     // Far away the sources' distances differ by less than double precision resolves: (z_v^2 - z_r^2)/(2 r^3).
-    CHECK(multiple_power(0.0, 1.0, 1.0, 1e6) == Approx(3.0 / (4.0 * pi) * (40.0 / 9.0) / 2e18).epsilon(1e-9));
+    CHECK(multiple_power(0.0, 1.0, 1.0, 1e6) == Approx(3.0 / (4.0 * M_PI) * (40.0 / 9.0) / 2e18).epsilon(1e-9));
 }
 
 // E_2(1) = exp(-1) - E_1(1), E_1(1) = 0.219383934395520 (Abramowitz and Stegun, table 5.1); E_2(0) = 1; far

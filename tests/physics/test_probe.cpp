@@ -21,8 +21,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 ProbeMaterial medium_of(double sigma_t, double albedo, double eta = 1.0) {
     ProbeMaterial material;
     material.name = "medium";
@@ -68,7 +66,7 @@ void check_near(const Measured& measured, double expected, double tolerance = 0.
     CHECK(std::abs(measured.value - expected) <= errors * measured.standard_error + tolerance);
 }
 
-double cosine_of(double angle_deg) { return std::cos(angle_deg * pi / 180.0); }
+double cosine_of(double angle_deg) { return std::cos(angle_deg * M_PI / 180.0); }
 
 // Specular reflectance, and the share of the light within that leaves after one collision and ever.
 struct Exact {
@@ -93,7 +91,7 @@ constexpr double table_tolerance = 2e-5;
 
 void check_elastic(Transport transport, const std::vector<Case>& cases, double errors = among_few) {
     for (const Case& c : cases) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)], c.albedo, c.angle_deg, c.eta);
+        CAPTURE(word_of(transport), c.albedo, c.angle_deg, c.eta);
         const ProbeResult result =
             measured(medium_of(2.0, c.albedo, c.eta), settings_of(transport, c.angle_deg, c.photons));
         const Exact exact = exact_elastic(c.albedo, c.angle_deg, c.eta);
@@ -119,7 +117,7 @@ ProbeMaterial dyed_medium(double albedo, double eta) {
 
 void check_fluorescence(Transport transport, const std::vector<Case>& cases, double errors = among_few) {
     for (const Case& c : cases) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)], c.albedo, c.angle_deg, c.eta);
+        CAPTURE(word_of(transport), c.albedo, c.angle_deg, c.eta);
         const ProbeMaterial material = dyed_medium(c.albedo, c.eta);
         const ProbeResult result = measured(material, settings_of(transport, c.angle_deg, c.photons));
         const double mu = cosine_within(c.eta, cosine_of(c.angle_deg));
@@ -239,7 +237,7 @@ void check_radial(const ProbeMaterial& material, double angle_deg, std::int64_t 
             sum += (a.value - b.value) * (a.value - b.value) /
                    (a.standard_error * a.standard_error + b.standard_error * b.standard_error);
             compared += 1.0;
-            share += b.value * pi * (std::pow(walked.r_mm[bin + 1], 2) - std::pow(walked.r_mm[bin], 2));
+            share += b.value * M_PI * (std::pow(walked.r_mm[bin + 1], 2) - std::pow(walked.r_mm[bin], 2));
         }
         CAPTURE(angle_deg, component, sum, compared);
         CHECK(share > 0.97 * walked.totals[component].value);
@@ -274,16 +272,16 @@ std::vector<double> escape_by_collisions(double mu, std::size_t count) {
     const GaussLegendre rule(40);
     std::vector<double> result(count, 0.0);
     for (std::size_t j = 0; j < points; ++j) {
-        const double angle = 2.0 * pi * static_cast<double>(j) / static_cast<double>(points);
+        const double angle = 2.0 * M_PI * static_cast<double>(j) / static_cast<double>(points);
         const std::complex<double> a = std::polar(radius, angle);
         std::complex<double> integral = 0.0;
         for (int panel = 0; panel < 8; ++panel)
             for (std::size_t i = 0; i < rule.node.size(); ++i) {
-                const double t = 0.5 * pi * (panel + rule.node[i]) / 8.0, k = std::tan(t), c = std::cos(t);
+                const double t = 0.5 * M_PI * (panel + rule.node[i]) / 8.0, k = std::tan(t), c = std::cos(t);
                 const std::complex<double> value = std::log(1.0 - a * (t / k)) / (c * c + mu * mu * k * k * c * c);
-                integral += 0.5 * pi / 8.0 * rule.weight[i] * value;
+                integral += 0.5 * M_PI / 8.0 * rule.weight[i] * value;
             }
-        const std::complex<double> reflected = 1.0 - std::sqrt(1.0 - a) * std::exp(-mu / pi * integral);
+        const std::complex<double> reflected = 1.0 - std::sqrt(1.0 - a) * std::exp(-mu / M_PI * integral);
         for (std::size_t n = 1; n <= count; ++n)
             result[n - 1] += (reflected * std::polar(std::pow(radius, -double(n)), -angle * double(n))).real() / points;
     }
@@ -356,7 +354,7 @@ TEST_CASE("surface fluorescence leaves at the beam", "[probe]") {
     CHECK(std::abs(result.emitted_photons.value - expected) <= 3.0 * result.emitted_photons.standard_error);
     CHECK(result.emitted_photons.standard_error < 0.01 * expected);
     CHECK(result.totals[probe_total].value == Approx(result.totals[probe_fluorescence].value));
-    CHECK(result.radial[probe_fluorescence][0].value * pi * result.r_mm[1] * result.r_mm[1] ==
+    CHECK(result.radial[probe_fluorescence][0].value * M_PI * result.r_mm[1] * result.r_mm[1] ==
           Approx(result.totals[probe_fluorescence].value));
 }
 
@@ -405,7 +403,7 @@ TEST_CASE("the probe does not depend on the unit of length", "[probe]") {
         settings.bins = 8;
         const ProbeResult middle = measured(medium_of(1.0, 0.9), settings);
         for (const double scale : {0x1p-24, 0x1p24}) {
-            CAPTURE(transport_words[static_cast<std::size_t>(transport)], scale);
+            CAPTURE(word_of(transport), scale);
             const ProbeResult result = measured(medium_of(scale, 0.9), settings);
             CHECK(result.totals[probe_total].value == Approx(middle.totals[probe_total].value).epsilon(1e-4));
             CHECK(result.dropped == 0.0);
@@ -433,7 +431,7 @@ TEST_CASE("a probe's result depends on its material, settings and wavelength alo
 // What leaves in the bins and beyond them is what leaves at all wavelengths.
 TEST_CASE("a probe's sums agree", "[probe]") {
     for (const Transport transport : {Transport::paper, Transport::conserving, Transport::walk}) {
-        CAPTURE(transport_words[static_cast<std::size_t>(transport)]);
+        CAPTURE(word_of(transport));
         ProbeSettings settings = settings_of(transport, 40.0, 6000);
         settings.r_max_mm = 0.7;
         settings.bins = 12;
@@ -456,7 +454,7 @@ TEST_CASE("a probe's sums agree", "[probe]") {
                 total += value * (result.lambda_nm[i] == 372 ? 1.0 : 5.0);
             }
             for (std::size_t bin = 0; bin < 12; ++bin)
-                radial += result.radial[component][bin].value * pi *
+                radial += result.radial[component][bin].value * M_PI *
                           (std::pow(result.r_mm[bin + 1], 2) - std::pow(result.r_mm[bin], 2));
             CHECK(result.totals[component].value == Approx(total).margin(1e-12));
             const double specular = component == probe_total ? result.totals[probe_specular].value : 0.0;

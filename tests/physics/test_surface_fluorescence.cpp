@@ -1,8 +1,6 @@
-#include "host/render/pass_spectra.hpp"
-#include "host/render/photon_tracer.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
@@ -20,9 +18,8 @@ Fluorophore overlapping() {
 
 // A plane of surface fluorescence, c = 1, under a parallel beam; its interior is seen from above.
 Scene plane_scene(const Spectrum& irradiance) {
-    Scene scene;
+    Scene scene = empty_scene("plane");
     scene.render.transport = Transport::paper;
-    scene.file = "plane";
     scene.fluorophores = {overlapping()};
     scene.materials = {{"paint", TranslucentMaterial{std::nullopt, {{0, 1.0}}, false}}};
     add_shape(scene, "plane", 0, make_rectangle(1000.0, 1000.0));
@@ -48,38 +45,16 @@ std::array<double, 16> emitted_radiance(const Scene& scene, const WavelengthSet&
     return radiance;
 }
 
-// The deposits of a pass, as PhotonTracer leaves them, summed over photons: [map][wavelength] [W/nm].
+// The deposits of a pass, summed over photons: [map][wavelength] [W/nm].
 std::array<std::array<double, 16>, STOKES_MAP_COUNT> deposited(const Scene& scene, std::uint32_t pass) {
-    const Device& device = test_device();
-    const DeviceScene on_device(device, scene);
-    const auto photons = static_cast<std::uint32_t>(scene.render.photons_per_pass);
-    const PassSpectra spectra =
-        make_pass_spectra(scene, on_device.light_probability, on_device.light_spread, pass, photons);
-    PassConstants constants = spectra.constants;
-    constants.offset_mm = on_device.offset_mm;
-    const PassBuffers buffers{
-        Buffer<PassConstants>(device, "constants", {constants}), Buffer<Flux16>(device, "rows", spectra.rows),
-        Buffer<Flux16>(device, "flux", spectra.photon_flux), Buffer<Flux16>(device, "radiance", spectra.radiance)};
-    const Buffer<float> lambda(device, "lambda", 16);
-    lambda.upload(constants.lambda_nm, 16);
-    const DeviceTables& tables = on_device.tables;
-    if (tables.entries > 0)
-        Program(device, "resample_tables.cl")
-            .kernel("resample_table")
-            .launch(tables.entries, tables.values, static_cast<std::uint32_t>(tables.wavelengths.count),
-                    static_cast<float>(tables.wavelengths.first), static_cast<float>(tables.wavelengths.step), lambda,
-                    tables.at_wavelengths, tables.entries);
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
-    PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                    PhotonMap(device, "surface", 16)};
-    tracer.trace(on_device, buffers, photons, maps);
+    PhotonPasses passes(scene);
+    passes.trace(pass);
     std::array<std::array<double, 16>, STOKES_MAP_COUNT> sums{};
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        const std::vector<PhotonHead> heads = maps[m].heads().download(maps[m].used());
-        const std::vector<Flux16> flux = maps[m].flux().download(maps[m].used());
-        for (std::size_t i = 0; i < heads.size(); ++i)
-            if (heads[i].normal != STOKES_EMPTY_SLOT)
-                for (std::size_t k = 0; k < 16; ++k) sums[m][k] += static_cast<double>(flux[i].v[k]);
+    for (std::size_t m = 0; m < sums.size(); ++m) {
+        const Deposits deposits = passes.deposits(m);
+        for (std::size_t i = 0; i < deposits.heads.size(); ++i)
+            if (deposits.heads[i].normal != STOKES_EMPTY_SLOT)
+                for (std::size_t k = 0; k < 16; ++k) sums[m][k] += static_cast<double>(deposits.flux[i].v[k]);
     }
     return sums;
 }

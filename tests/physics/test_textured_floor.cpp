@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
 
@@ -20,8 +21,7 @@ constexpr double floor_mm = 160.0;
 // so that the outer quarter on each side has the colour of one texel alone. All of the floor is lit, and
 // nothing beside it.
 Scene checkered_floor() {
-    Scene scene;
-    scene.file = "floor";
+    Scene scene = empty_scene("floor");
     const auto checks = std::make_shared<const Picture>(Picture{2, 2, {1.0f, 0.0f, 0.0f, 1.0f}, {}});
     scene.materials = {Material{}, {"checker", DiffuseMaterial{dark, checks, bright}}};
     add_shape(scene, "floor", 1, make_rectangle(floor_mm, floor_mm));
@@ -30,7 +30,6 @@ Scene checkered_floor() {
     scene.lights = {{"beam", sloping.scaled(floor_mm * floor_mm * 1e-6), beam}};
     scene.film = {8, 8, {}};
     scene.render.photons_per_pass = 60000;
-    scene.render.wavelengths = Wavelengths::uniform;  // as known_light draws them
     scene.render.radius_mm = 5.0;
     return scene;
 }
@@ -110,8 +109,7 @@ TEST_CASE("a checkered floor absorbs the mean of what its squares do, and the le
 // A closed room of reflectance R under radiance 1 has 1/(1 - R) everywhere; so it has where R comes from a
 // picture of one luminance, black + L (white - black).
 TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[textured]") {
-    Scene scene;
-    scene.file = "furnace";
+    Scene scene = empty_scene("furnace");
     const auto grey = std::make_shared<const Picture>(Picture{3, 1, {0.5f, 0.5f, 0.5f}, {}});
     scene.materials = {{"paper", DiffuseMaterial{Spectrum::constant(0.2), grey, Spectrum::constant(0.8)}}};
     Mesh room = turned_over(make_sphere(100.0, 64));
@@ -123,7 +121,6 @@ TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[
     scene.camera.target_mm = {-30.0, 40.0, 10.0};
     scene.film = {8, 8, {}};
     scene.render.photons_per_pass = 50000;
-    scene.render.wavelengths = Wavelengths::uniform;  // as known_light draws them
     scene.render.radius_mm = 12.0;
     Renderer renderer(test_device(), scene);
     PassImages images(renderer);

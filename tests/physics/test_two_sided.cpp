@@ -3,6 +3,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
+#include "tests/support/test_scenes.hpp"
 
 using namespace stokes;
 
@@ -15,7 +16,7 @@ const Spectrum sloping = {{300.0, 780.0}, {0.5, 2.0}, Outside::zero};
 // A sheet in the plane y = 0, larger than the beam that falls on its middle from one side (1: above, -1:
 // below), seen from one side.
 Scene lit_sheet(double light_side, double camera_side, bool two_sided) {
-    Scene scene;
+    Scene scene = empty_scene("sheet");
     scene.materials = {diffuse_material(reflectance)};
     add_shape(scene, "sheet", 0, make_rectangle(400.0, 400.0)).two_sided = two_sided;
     scene.lights = {disk_beam({0.0, 0.0, 0.0}, {0.3, -light_side, 0.0}, 80.0, sloping)};
@@ -23,7 +24,6 @@ Scene lit_sheet(double light_side, double camera_side, bool two_sided) {
     scene.camera.position_mm.y *= camera_side;
     scene.film = {8, 8, {}};
     scene.render.photons_per_pass = 20000;
-    scene.render.wavelengths = Wavelengths::uniform;  // as known_light draws them
     scene.render.radius_mm = 6.0;
     return scene;
 }

@@ -1,5 +1,5 @@
 // Model `walk` in closed meshes (PHYSICS section 5).
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/beam_fixture.hpp"
 #include "tests/support/input_error.hpp"
 

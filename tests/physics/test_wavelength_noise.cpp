@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"

@@ -1,4 +1,4 @@
-#include "host/scene/scene_reader.hpp"
+#include "host/scene/readers/scene_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/device_fixture.hpp"
 #include "tests/support/known_light.hpp"
@@ -123,9 +123,8 @@ TEST_CASE("two seeds give the same picture within their noise", "[whole_path]") 
 // Nearer, less than half of the disk lies beyond the wall.
 TEST_CASE("no light goes through a thin wall", "[whole_path]") {
     const double radius_mm = 5.0, thickness_mm = 0.5;
-    Scene scene;
+    Scene scene = empty_scene("rooms");
     scene.render.transport = Transport::paper;
-    scene.file = "rooms";
     scene.materials = {diffuse_material(0.9), Material{}};
     add_shape(scene, "box", 0, turned_over(make_box({200.0, 100.0, 100.0})));
     add_shape(scene, "wall", 0, make_box({thickness_mm, 104.0, 104.0}));

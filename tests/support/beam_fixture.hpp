@@ -6,12 +6,11 @@
 #include <cmath>
 #include <vector>
 
-#include "host/render/pass_maker.hpp"
-#include "host/render/photon_tracer.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/device_fixture.hpp"
 #include "tests/support/half_space.hpp"
+#include "tests/support/photon_passes.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/test_scenes.hpp"
 
 namespace stokes {
 
@@ -81,12 +80,7 @@ inline Scene beam_scene(const Material16& m, const Mesh& mesh, double mu) {
     TranslucentMaterial material{0, {}, m.fresnel};
     if (m.fraction > 0.0) material.dyes = {{0, m.fraction}};
     scene.materials = {{"material", material}};
-    Shape shape;
-    shape.name = "body";
-    shape.material = 0;
-    shape.body = scene.body_count++;
-    shape.mesh = mesh;
-    scene.shapes = {shape};
+    add_shape(scene, "body", 0, mesh);
     DiskBeam beam;
     beam.direction = {std::sqrt(1.0 - mu * mu), -mu, 0.0};
     beam.position_mm = -50.0 * beam.direction;
@@ -115,18 +109,11 @@ struct Measured {
 };
 
 inline Measured measure(const Scene& scene, std::uint32_t batches, std::uint32_t photons) {
-    const Device& device = test_device();
-    const DeviceScene on_device(device, scene);
-    PassMaker pass(device, scene, on_device);
-    PhotonTracer tracer(device, on_device.rays.kernels, photons);
+    PhotonPasses passes(scene, photons);
     Measured result;
     for (std::uint32_t batch = 0; batch < batches; ++batch) {
-        PhotonMaps maps{PhotonMap(device, "F", 16), PhotonMap(device, "S", 16), PhotonMap(device, "M", 16),
-                        PhotonMap(device, "surface", 16)};
-        pass.make(test_wavelengths(), batch, photons);
-        const PhotonAccount account = tracer.trace(on_device, pass.buffers(), photons, maps);
-        std::array<std::vector<Flux16>, 3> flux;
-        for (std::size_t m = 0; m < 3; ++m) flux[m] = maps[m].flux().download(maps[m].used());
+        const PhotonAccount account = passes.trace(test_wavelengths(), batch);
+        const std::array<std::vector<Flux16>, 3> flux = {passes.flux(0), passes.flux(1), passes.flux(2)};
         for (std::size_t i = 0; i < photons; ++i)
             for (std::size_t k = 0; k < wavelengths; ++k) {
                 double sum = i < flux[0].size() ? 0.0 : 1.0;  // reflected by the surface

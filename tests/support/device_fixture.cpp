@@ -1,7 +1,6 @@
 #include "tests/support/device_fixture.hpp"
 
-#include <fstream>
-#include <sstream>
+#include "host/core/text_input.hpp"
 
 #include "tests/support/paths.hpp"
 
@@ -15,11 +14,7 @@ Device& test_device() {
 
 Program test_program(const std::string& name, const std::vector<std::string>& options) {
     const std::string path = source_path("tests/kernel/" + name);
-    std::ifstream in(path);
-    if (!in) throw RunError(path + ": cannot read this test kernel");
-    std::ostringstream text;
-    text << in.rdbuf();
-    return Program::from_source(test_device(), name, text.str(), options);
+    return Program::from_source(test_device(), name, read_file(path), options);
 }
 
 }  // namespace stokes

@@ -54,6 +54,16 @@ inline Escaping escaping_share(double eta, double mu, double albedo, double rati
     return result;
 }
 
+// The reflectance of a half-space, 1 - sqrt(1 - a) H(mu), to the digits that PHYSICS section 4 gives (Chandrasekhar,
+// "Radiative Transfer", 1960).
+inline constexpr struct {
+    double albedo, mu, expected;
+} chandrasekhar[] = {{0.9, 1.0, 0.4149475},
+                     {0.9, 0.5, 0.5079389},
+                     {0.5, 1.0, 0.1152259},
+                     {0.99, 1.0, 0.7527207},
+                     {0.998, 0.5, 0.9133801}};
+
 // Cosine below the surface of light that arrives at cosine mu.
 inline double cosine_within(double eta, double mu) { return std::sqrt(1.0 - (1.0 - mu * mu) / (eta * eta)); }
 

@@ -9,36 +9,12 @@
 #include "host/image/colour.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/wavelengths.hpp"
-#include "host/scene/mesh.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/test_scenes.hpp"
 
 namespace stokes {
-
-inline Material diffuse_material(double reflectance) {
-    return {"diffuse", DiffuseMaterial{Spectrum::constant(reflectance), nullptr, Spectrum::constant(0.0)}};
-}
-
-inline Shape& add_shape(Scene& scene, const std::string& name, int material, Mesh mesh) {
-    Shape shape;
-    shape.name = name;
-    shape.material = material;
-    shape.body = scene.body_count++;
-    shape.mesh = std::move(mesh);
-    scene.shapes.push_back(shape);
-    return scene.shapes.back();
-}
-
-inline Mesh moved(Mesh mesh, const glm::dvec3& by_mm) {
-    for (glm::vec3& p : mesh.positions_mm) p += glm::vec3(by_mm);
-    return mesh;
-}
-
-// The same surface with its front on the other side.
-inline Mesh turned_over(Mesh mesh) {
-    for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
-    return mesh;
-}
 
 // A parallel beam of spectral irradiance 1 W m^-2 nm^-1 (times the spectrum) on a plane across it, through a
 // disk about the point that it hits first.

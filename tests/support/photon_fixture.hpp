@@ -13,6 +13,7 @@
 #include "kernels/shared/photon.h"
 #include "kernels/shared/ray.h"
 #include "tests/support/device_fixture.hpp"
+#include "tests/support/triangle_meshes.hpp"
 
 namespace stokes {
 
@@ -115,21 +116,6 @@ inline MaterialRecord translucent_record(std::uint32_t flags, float fluorescent_
     record.fluorescent_fraction = fluorescent_fraction;
     record.eta = eta;
     return record;
-}
-
-// A triangle by its corners; the normal is (b - a) x (c - a).
-inline Triangle make_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t shape = 0,
-                              std::uint32_t body = 0) {
-    const glm::vec3 e1 = b - a, e2 = c - a;
-    return {a.x, a.y, a.z, shape, e1.x, e1.y, e1.z, body, e2.x, e2.y, e2.z, 0};
-}
-
-inline glm::dvec3 normal_of(const Triangle& t) {
-    return glm::normalize(glm::cross(glm::dvec3(t.e1x, t.e1y, t.e1z), glm::dvec3(t.e2x, t.e2y, t.e2z)));
-}
-
-inline glm::dvec3 point_on(const Triangle& t, double u, double v) {
-    return glm::dvec3(t.v0x, t.v0y, t.v0z) + u * glm::dvec3(t.e1x, t.e1y, t.e1z) + v * glm::dvec3(t.e2x, t.e2y, t.e2z);
 }
 
 // Two unit vectors at right angles to n and to each other, by another construction than the kernels'.

@@ -2,25 +2,12 @@
 
 #include <cmath>
 
-#include "host/scene/mesh.hpp"
-#include "host/scene/shapes.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
 
 namespace stokes {
 
 namespace {
-
-Shape make_shape(Scene& scene, const std::string& name, int material, Mesh mesh) {
-    Shape shape;
-    shape.name = name;
-    shape.material = material;
-    shape.body = scene.body_count++;
-    shape.mesh = std::move(mesh);
-    return shape;
-}
-
-Material diffuse(double reflectance) {
-    return {"diffuse", DiffuseMaterial{Spectrum::constant(reflectance), nullptr, Spectrum::constant(0.0)}};
-}
 
 Fluorophore dot_like() {
     Fluorophore fluorophore;
@@ -47,16 +34,43 @@ TranslucentMaterial& translucent_of(Scene& scene, std::size_t material) {
     return std::get<TranslucentMaterial>(scene.materials[material].kind);
 }
 
-Scene furnace_scene(double reflectance) {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
-    scene.file = "furnace";
-    scene.materials = {diffuse(reflectance)};
-    Mesh mesh = make_sphere(100.0, 64);
+Material diffuse_material(double reflectance) {
+    return {"diffuse", DiffuseMaterial{Spectrum::constant(reflectance), nullptr, Spectrum::constant(0.0)}};
+}
+
+Shape& add_shape(Scene& scene, const std::string& name, int material, const Mesh& mesh) {
+    Shape& shape = scene.shapes.emplace_back();
+    shape.name = name;
+    shape.material = material;
+    shape.body = scene.body_count++;
+    shape.mesh = mesh;
+    return shape;
+}
+
+Mesh moved(Mesh mesh, const glm::dvec3& by_mm) {
+    for (glm::vec3& p : mesh.positions_mm) p += glm::vec3(by_mm);
+    return mesh;
+}
+
+Mesh turned_over(Mesh mesh) {
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
-    scene.shapes = {make_shape(scene, "wall", 0, mesh)};
-    scene.shapes[0].light = 0;
-    scene.lights = {{"wall", Spectrum::constant(M_PI * mesh_area_mm2(mesh) * 1e-6), SurfaceLight{0}}};
+    return mesh;
+}
+
+Scene empty_scene(const std::string& name) {
+    Scene scene;
+    scene.file = name;
+    scene.render.wavelengths = Wavelengths::uniform;
+    scene.render.emission = Emission::stratified;
+    return scene;
+}
+
+Scene furnace_scene(double reflectance) {
+    Scene scene = empty_scene("furnace");
+    scene.materials = {diffuse_material(reflectance)};
+    Shape& wall = add_shape(scene, "wall", 0, turned_over(make_sphere(100.0, 64)));
+    wall.light = 0;
+    scene.lights = {{"wall", Spectrum::constant(M_PI * mesh_area_mm2(wall.mesh) * 1e-6), SurfaceLight{0}}};
     scene.camera.position_mm = {20.0, -10.0, 5.0};
     scene.camera.target_mm = {-30.0, 40.0, 10.0};
     scene.film = {16, 16, {}};
@@ -65,14 +79,12 @@ Scene furnace_scene(double reflectance) {
 }
 
 Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transport) {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
+    Scene scene = empty_scene("slab");
     scene.render.transport = transport;
-    scene.file = "slab";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};
     scene.materials = {translucent(fluorescent_fraction)};
-    scene.shapes = {make_shape(scene, "slab", 0, make_rectangle(2000.0, 2000.0))};
+    add_shape(scene, "slab", 0, make_rectangle(2000.0, 2000.0));
     const double angle = angle_deg * M_PI / 180.0;
     DiskBeam beam;
     beam.direction = {std::sin(angle), -std::cos(angle), 0.0};
@@ -88,21 +100,16 @@ Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transp
 }
 
 Scene small_scene(Transport transport) {
-    Scene scene;
-    scene.render.wavelengths = Wavelengths::uniform;
+    Scene scene = empty_scene("small");
     scene.render.transport = transport;
-    scene.file = "small";
     scene.media = {marble_green()};
     scene.fluorophores = {dot_like()};
-    scene.materials = {diffuse(0.7), translucent(0.5), Material{}};
-    scene.shapes.push_back(make_shape(scene, "floor", 0, make_rectangle(120.0, 120.0)));
-    Mesh ball = make_sphere(15.0, 48);
-    for (glm::vec3& p : ball.positions_mm) p.y += 15.0f;
-    scene.shapes.push_back(make_shape(scene, "ball", 1, ball));
+    scene.materials = {diffuse_material(0.7), translucent(0.5), Material{}};
+    add_shape(scene, "floor", 0, make_rectangle(120.0, 120.0));
+    add_shape(scene, "ball", 1, moved(make_sphere(15.0, 48), {0.0, 15.0, 0.0}));
     Mesh lamp = make_disk(20.0, 32);
     for (glm::vec3& p : lamp.positions_mm) p = {p.x, 90.0f - p.y, -p.z};
-    scene.shapes.push_back(make_shape(scene, "lamp", 2, lamp));
-    scene.shapes.back().light = 0;
+    add_shape(scene, "lamp", 2, lamp).light = 0;
     const Spectrum flux = {{300.0, 360.0, 420.0, 780.0}, {0.0, 1e-2, 1e-3, 1e-3}, Outside::zero};
     scene.lights = {{"lamp", flux, SurfaceLight{2}}};
     scene.camera.position_mm = {0.0, 60.0, 110.0};

@@ -8,16 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/bvh_builder.hpp"
+#include "host/scene/bvh/bvh_builder.hpp"
 #include "tests/support/device_fixture.hpp"
+#include "tests/support/triangle_meshes.hpp"
 
 namespace stokes {
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
-
-inline glm::dvec3 v0_of(const Triangle& t) { return {t.v0x, t.v0y, t.v0z}; }
-inline glm::dvec3 e1_of(const Triangle& t) { return {t.e1x, t.e1y, t.e1z}; }
-inline glm::dvec3 e2_of(const Triangle& t) { return {t.e2x, t.e2y, t.e2z}; }
 
 inline std::vector<std::string> with_layout(std::vector<std::string> options, const BvhLayout& layout) {
     for (const std::string& option : bvh_kernel_options(layout)) options.push_back(option);
@@ -35,32 +32,37 @@ struct Traced {
           blocks(test_device(), "blocks", bvh.blocks),
           triangle_buffer(test_device(), "triangles", scene) {}
 
+    Arguments arguments() const {
+        return Arguments().add("bvh_nodes", nodes, "BvhNode").add("bvh_blocks", blocks).add("bvh_grid", bvh.grid);
+    }
     std::vector<Hit> closest(const std::vector<Ray>& rays) {
         const Buffer<Ray> in(test_device(), "rays", rays);
         const Buffer<Hit> out(test_device(), "hits", rays.size());
         const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_closest_all").launch(n, n, nodes, blocks, bvh.grid, in, out);
+        program.kernel("trace_closest_all").launch(n, arguments().add("n", n).add("rays", in).add("hits", out));
         return out.download();
     }
     std::vector<Hit> packets(const std::vector<Ray>& rays) {
         const Buffer<Ray> in(test_device(), "rays", rays);
         const Buffer<Hit> out(test_device(), "hits", rays.size());
         const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_packets").launch((n + 15) / 16, n, nodes, blocks, bvh.grid, in, out);
+        program.kernel("trace_packets").launch((n + 15) / 16, arguments().add("n", n).add("rays", in).add("hits", out));
         return out.download();
     }
     std::vector<cl_uint> any(const std::vector<Ray>& rays) {
         const Buffer<Ray> in(test_device(), "rays", rays);
         const Buffer<cl_uint> out(test_device(), "occluded", rays.size());
         const auto n = static_cast<cl_uint>(rays.size());
-        program.kernel("trace_any").launch(n, n, nodes, blocks, bvh.grid, in, out);
+        program.kernel("trace_any").launch(n, arguments().add("n", n).add("rays", in).add("occluded", out));
         return out.download();
     }
     std::vector<Hit> probe(const std::vector<Probe>& probes) {
         const Buffer<Probe> in(test_device(), "probes", probes);
         const Buffer<Hit> out(test_device(), "hits", probes.size());
         const auto n = static_cast<cl_uint>(probes.size());
-        program.kernel("trace_probe").launch(n, n, nodes, blocks, bvh.grid, triangle_buffer, in, out);
+        program.kernel("trace_probe")
+            .launch(n,
+                    arguments().add("n", n).add("triangles", triangle_buffer).add("probes", in).add("probe_hits", out));
         return out.download();
     }
 

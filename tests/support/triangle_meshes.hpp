@@ -1,4 +1,4 @@
-// Triangles for tests: closed spheres, boxes, soups.
+// Triangles for tests: one by one, closed spheres, boxes, soups.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,26 @@
 
 namespace stokes {
 
-Triangle make_triangle(const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2, std::uint32_t body = 0);
+struct Mesh;
+
+// A triangle by its corners; the normal is (v1 - v0) x (v2 - v0).
+inline Triangle make_triangle(const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2, std::uint32_t shape = 0,
+                              std::uint32_t body = 0) {
+    const glm::vec3 e1 = v1 - v0, e2 = v2 - v0;
+    return {v0.x, v0.y, v0.z, shape, e1.x, e1.y, e1.z, body, e2.x, e2.y, e2.z, 0};
+}
+
+inline glm::dvec3 v0_of(const Triangle& t) { return {t.v0x, t.v0y, t.v0z}; }
+inline glm::dvec3 e1_of(const Triangle& t) { return {t.e1x, t.e1y, t.e1z}; }
+inline glm::dvec3 e2_of(const Triangle& t) { return {t.e2x, t.e2y, t.e2z}; }
+inline glm::dvec3 normal_of(const Triangle& t) { return glm::normalize(glm::cross(e1_of(t), e2_of(t))); }
+inline double area_of(const Triangle& t) { return 0.5 * glm::length(glm::cross(e1_of(t), e2_of(t))); }
+inline glm::dvec3 point_on(const Triangle& t, double u, double v) { return v0_of(t) + u * e1_of(t) + v * e2_of(t); }
+
+// Whether every directed edge, by the exact places of its ends, is in all the meshes once, and its reverse once.
+bool are_watertight(const std::vector<Mesh>& parts);
+
+std::vector<Triangle> triangles_of(const Mesh& mesh, std::uint32_t body = 0);
 
 // A closed sphere of 2 * segments * (rings - 1) triangles, outward normals; vertices on the axes are exact
 // neither in position nor in spacing, so that edges meet rays at all angles.

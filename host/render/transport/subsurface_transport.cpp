@@ -7,11 +7,12 @@
 namespace stokes {
 
 PathSampling path_sampling(const RenderSettings& render) {
+    const ResolvedSettings settings = resolved(render);
     PathSampling sampling;
-    sampling.both_branches = render.transport != Transport::walk && chosen_branches(render) == Branches::both;
-    sampling.exits = static_cast<std::uint32_t>(chosen_exits(render));
-    sampling.weighted_distances = chosen_distances(render) == Distances::importance;
-    sampling.store_direct = chosen_direct(render) == Direct::photons;
+    sampling.both_branches = settings.branches == Branches::both;
+    sampling.exits = static_cast<std::uint32_t>(settings.exits);
+    sampling.weighted_distances = settings.distances == Distances::importance;
+    sampling.store_direct = settings.direct == Direct::photons;
     return sampling;
 }
 

@@ -1,0 +1,39 @@
+// What can be done with a triangle mesh: measure it, move it, clean it.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+
+#include "host/scene/scene.hpp"
+
+namespace stokes {
+
+struct Bounds {
+    glm::dvec3 low_mm;
+    glm::dvec3 high_mm;
+};
+
+// Of the vertices; the mesh has at least one.
+Bounds mesh_bounds(const Mesh& mesh);
+// A triangle's area times its normal [mm^2].
+inline glm::dvec3 area_vector_mm2(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return 0.5 * glm::cross(b - a, c - a);
+}
+glm::dvec3 area_vector_mm2(const Mesh& mesh, const glm::uvec3& triangle);
+// Total area of the triangles [mm^2], one side.
+double mesh_area_mm2(const Mesh& mesh);
+// Volume inside a closed mesh [mm^3]; negative when its triangles face inward.
+double mesh_volume_mm3(const Mesh& mesh);
+
+// Applies the affine transform to the positions; one that mirrors also turns the triangles over, so that
+// what was outside stays outside.
+void transform_mesh(Mesh& mesh, const glm::dmat4& transform);
+
+// Triangles whose normal cannot be found in single precision.
+std::size_t count_degenerate_triangles(const Mesh& mesh);
+
+// Drops the triangles whose normal cannot be found in single precision, and the vertices that no triangle
+// uses. Returns the number of triangles dropped.
+std::size_t drop_degenerate_triangles(Mesh& mesh);
+
+}  // namespace stokes

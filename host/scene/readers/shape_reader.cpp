@@ -1,0 +1,228 @@
+#include "host/scene/readers/shape_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+
+#include "host/core/error.hpp"
+#include "host/core/log.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/shapes.hpp"
+#include "host/scene/readers/input_files.hpp"
+#include "host/scene/readers/mask.hpp"
+#include "host/scene/readers/material_reader.hpp"
+#include "host/scene/readers/mesh_reader.hpp"
+#include "host/scene/readers/picture.hpp"
+#include "host/scene/settings/object.hpp"
+
+namespace stokes {
+namespace {
+
+constexpr NumberRange scale_range{-1e9, 1e9};
+constexpr int most_sectors = 360;
+
+double nonzero_scale(const JsonCursor& where) {
+    const double factor = where.number(scale_range);
+    if (std::abs(factor) < 1e-9) where.fail_expected("a scale other than zero");
+    return factor;
+}
+
+glm::dmat4 read_step(const JsonCursor& place) {
+    const ObjectReader where(place, "transform");
+    const glm::dmat4 identity(1.0);
+    if (where.kind() == "transform_scale") {
+        const JsonCursor scale = where.at("scale");
+        if (!scale.is(JsonValue::Type::array)) return glm::scale(identity, glm::dvec3(nonzero_scale(scale)));
+        const glm::dvec3 factors = scale.vector(scale_range);
+        for (const JsonCursor& factor : scale.items()) nonzero_scale(factor);
+        return glm::scale(identity, factors);
+    }
+    if (where.kind() == "transform_rotate") {
+        return glm::rotate(identity, glm::radians(where.number("angle_deg")), where.direction("rotate_axis"));
+    }
+    return glm::translate(identity, where.vector("translate_mm"));
+}
+
+glm::dmat4 read_transform(const JsonCursor& shape) {
+    glm::dmat4 result(1.0);
+    const auto transform = shape.find("transform");
+    if (!transform) return result;
+    for (const JsonCursor& step : transform->items()) result = read_step(step) * result;
+    return result;
+}
+
+struct ShapeFiles {
+    explicit ShapeFiles(const std::filesystem::path& folder) : meshes(folder), pictures(folder) {}
+    InputFiles<Mesh, read_mesh> meshes;
+    InputFiles<Picture, read_picture> pictures;
+};
+
+Mesh read_mask(const ObjectReader& where, ShapeFiles& files) {
+    const JsonCursor file = where.at("file");
+    MaskTexels texels;
+    texels.threshold = where.number("threshold");
+    texels.invert = where.boolean("invert");
+    const double width = where.number("width_mm"), height = where.number("height_mm");
+    const Picture& picture = files.pictures.read(file);
+    try {
+        return make_mask(picture, width, height, texels);
+    } catch (const InputError& error) {
+        file.fail(error.what());
+    }
+}
+
+Mesh read_shape_mesh(const ObjectReader& where, ShapeFiles& files) {
+    const std::string& kind = where.kind();
+    if (kind == "shape_mesh") return files.meshes.read(where.at("file"));
+    if (kind == "shape_box") return make_box(where.vector("size_mm"));
+    if (kind == "shape_sphere") return make_sphere(where.number("radius_mm"), where.integer("segments"));
+    if (kind == "shape_rectangle") return make_rectangle(where.number("width_mm"), where.number("height_mm"));
+    if (kind == "shape_disk") return make_disk(where.number("radius_mm"), where.integer("segments"));
+    if (kind == "shape_prism")
+        return make_prism(where.integer("sides"), where.number("radius_mm"), where.number("height_mm"));
+    if (kind == "shape_cylinder")
+        return make_cylinder(where.number("radius_mm"), where.number("height_mm"), where.integer("segments"));
+    return read_mask(where, files);
+}
+
+const Material& material_of(const Scene& scene, int material) {
+    return scene.materials[static_cast<std::size_t>(material)];
+}
+
+// Light from below the surface of one part leaves through the others too.
+std::vector<int> read_part_materials(const JsonCursor& where, const Scene& scene) {
+    const std::vector<JsonCursor> items = where.items();
+    if (items.empty()) where.fail_expected("one or more names of materials");
+    std::vector<int> materials;
+    const auto is_translucent = [&](int m) { return medium_of(material_of(scene, m)).has_value(); };
+    for (const JsonCursor& item : items) {
+        materials.push_back(index_of_name(item, "materials", scene.materials));
+        if (is_translucent(materials.back()) != is_translucent(materials.front()))
+            item.fail(
+                fmt::format("expected materials all with light below their surfaces or all without, got \"{}\" and "
+                            "\"{}\"",
+                            material_of(scene, materials.front()).name, item.text()));
+    }
+    return materials;
+}
+
+std::vector<Mesh> read_parts(const ObjectReader& where, std::size_t material_count) {
+    const JsonCursor materials = where.at("materials");
+    const auto parts = static_cast<int>(material_count);
+    if (where.kind() == "shape_tiles") {
+        const int columns = where.integer("columns"), rows = where.integer("rows");
+        const glm::dvec3 size = where.vector("size_mm");
+        if (parts >= columns + rows)
+            materials.fail_expected(
+                fmt::format("at most {} materials for {} x {} tiles", columns + rows - 1, columns, rows));
+        return make_tiles(size, columns, rows, parts);
+    }
+    if (parts > most_sectors) materials.fail_expected(fmt::format("at most {} materials", most_sectors));
+    return make_sectors(where.number("radius_mm"), where.number("height_mm"), parts, where.integer("segments"),
+                        where.number("start_deg"));
+}
+
+// Shapes of several materials: one shape of the scene for each, of one body.
+void read_compound(const ObjectReader& where, const std::string& name, Scene& scene) {
+    const std::vector<int> materials = read_part_materials(where.at("materials"), scene);
+    const std::vector<Mesh> parts = read_parts(where, materials.size());
+    const glm::dmat4 transform = read_transform(where);
+    const int body = scene.body_count++;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Shape shape;
+        shape.name = fmt::format("{} ({})", name, material_of(scene, materials[i]).name);
+        shape.material = materials[i];
+        shape.body = body;
+        shape.mesh = parts[i];
+        add_shape(where, std::move(shape), transform, scene);
+    }
+}
+
+// Bodies are numbered as they appear; a shape without the key has one of its own.
+int read_body(const JsonCursor& shape, int material, Scene& scene, std::map<std::string, int>& bodies) {
+    const auto body = shape.find("body");
+    if (!body) return scene.body_count++;
+    const auto [entry, is_new] = bodies.emplace(body->name(), scene.body_count);
+    if (is_new) return scene.body_count++;
+    for (const Shape& other : scene.shapes) {
+        if (other.body != entry->second || other.material == material) continue;
+        body->fail(fmt::format("expected one material in a body, got \"{}\" and \"{}\"",
+                               scene.materials[static_cast<std::size_t>(other.material)].name,
+                               scene.materials[static_cast<std::size_t>(material)].name));
+    }
+    return entry->second;
+}
+
+constexpr const char* too_small = "too small for single precision at this distance from the origin";
+
+void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count, const char* what) {
+    if (count == 0) return;
+    warn(fmt::format("{}: {} ({}): left out {} triangle{} {}", where.file(), where.path(), name, count,
+                     count == 1 ? "" : "s", what));
+}
+
+}  // namespace
+
+void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene) {
+    ShapeFiles files(folder);
+    std::map<std::string, int> bodies;
+    std::vector<std::string> names;
+    for (const JsonCursor& place : shapes.items()) {
+        const ObjectReader where(place, "shape");
+        const std::string name = read_own_name(where, fmt::format("shape {}", names.size()), names);
+        names.push_back(name);
+        if (where.has("materials")) {
+            read_compound(where, name, scene);
+            continue;
+        }
+        Shape shape;
+        shape.mesh = read_shape_mesh(where, files);
+        shape.name = name;
+        shape.material = index_of_name(where.at("material"), "materials", scene.materials);
+        shape.two_sided = where.kind() == "shape_mask";
+        if (shape.two_sided && as_translucent(material_of(scene, shape.material)) != nullptr)
+            where.at("material").fail("expected a black or diffuse material for a mask, got a translucent one");
+        shape.body = read_body(where, shape.material, scene, bodies);
+        add_shape(where, std::move(shape), read_transform(where), scene);
+    }
+}
+
+int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform, Scene& scene) {
+    const std::size_t flat_before = count_degenerate_triangles(shape.mesh);
+    transform_mesh(shape.mesh, transform);
+    for (const glm::vec3& position : shape.mesh.positions_mm) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (coordinate_range.contains(position[axis])) continue;
+            where.fail(fmt::format("expected coordinates {} mm, got {}", coordinate_range.text(), position[axis]));
+        }
+    }
+    const Material& material = material_of(scene, shape.material);
+    const bool textured = texture_of(material) != nullptr;
+    if (!textured) shape.mesh.uv.clear();
+    if (textured && shape.mesh.uv.empty())
+        where.fail(
+            fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
+                        "mesh with texture coordinates{}",
+                        material.name, shape.mesh.uv_fault.empty() ? "" : " (" + shape.mesh.uv_fault + ")"));
+    const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
+    const std::size_t flat = std::min(flat_before, dropped);
+    if (shape.mesh.triangles.empty()) {
+        where.fail(flat < dropped ? fmt::format("expected a larger shape: {}", too_small)
+                                  : "expected a triangle with an area, found none");
+    }
+    warn_of_triangles(where, shape.name, flat, "without area");
+    warn_of_triangles(where, shape.name, dropped - flat, too_small);
+    scene.shapes.push_back(std::move(shape));
+    return static_cast<int>(scene.shapes.size()) - 1;
+}
+
+std::string read_own_name(const JsonCursor& where, const std::string& fallback, const std::vector<std::string>& taken) {
+    const auto name = where.find("name");
+    if (!name) return fallback;
+    if (std::find(taken.begin(), taken.end(), name->name()) == taken.end()) return name->name();
+    name->fail(fmt::format("the name \"{}\" given twice", name->name()));
+}
+
+}  // namespace stokes
