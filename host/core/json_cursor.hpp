@@ -13,12 +13,6 @@
 
 namespace stokes {
 
-struct ObjectKeys {
-    std::string kind;  // the object's name under $defs of the schema
-    std::vector<std::string> required;
-    std::vector<std::string> optional;
-};
-
 // Bounds of a number; the open ends are excluded.
 struct NumberRange {
     double low;

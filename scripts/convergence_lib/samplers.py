@@ -1,19 +1,16 @@
 """The samplers that are compared."""
 
 import dataclasses
-import re
+import json
 import subprocess
-
-
-TRANSPORTS = ("paper", "conserving", "walk")
 
 
 @dataclasses.dataclass(frozen=True)
 class Option:
-    """A flag of stokes render and its value; transports: the models that take it."""
+    """A flag of stokes render and its value; transports: the models that take it, as the program says."""
 
     words: tuple
-    transports: tuple = TRANSPORTS
+    transports: tuple = ()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -41,15 +38,15 @@ PLAIN = "plain"
 BEST = "best"  # all of them together that are in it
 
 
-def option(*words, transports=TRANSPORTS):
-    return (Option(words, transports),)
+def option(*words):
+    return (Option(words),)
 
 
 # A sampler whose flag the program does not know is left out, with a note.
 SINGLE = (
     Sampler("wavelengths", option("--wavelengths", "importance")),
-    Sampler("branches", option("--branches", "both", transports=("paper", "conserving"))),
-    Sampler("distances", option("--distances", "importance", transports=("paper",))),
+    Sampler("branches", option("--branches", "both")),
+    Sampler("distances", option("--distances", "importance")),
     Sampler("emission", option("--emission", "aimed"), independent=False),
     Sampler("stratified", option("--emission", "stratified"), independent=False, in_best=False),
     Sampler("direct", option("--direct", "rays")),
@@ -60,20 +57,29 @@ OTHER_KERNEL = frozenset(sampler.name for sampler in SINGLE if not sampler.same_
 
 
 def known_flags(stokes):
-    """The long flags that `stokes render --help` names."""
-    text = subprocess.run([str(stokes), "render", "--help"], check=True, capture_output=True, text=True).stdout
-    return set(re.findall(r"--[a-z][a-z-]*", text))
+    """The flags of the program's settings, each with the transports that have it."""
+    text = subprocess.run([str(stokes), "schema", "--settings"], check=True, capture_output=True, text=True).stdout
+    settings = json.loads(text).values()
+    return {setting["flags"].split(",")[0]: tuple(setting["transports"]) for setting in settings}
 
 
 def available(known):
-    """Plain, best and the single samplers whose flags are known, by name; and the names of those left out. Best names
-    every flag, as what it stands for without depends on the transport model."""
-    singles = [sampler for sampler in SINGLE if sampler.options[0].words[0] in known]
+    """Plain, best and the single samplers whose flags are known, by name; and the names of those left out. known: as
+    known_flags has them. Best names every flag, as what it stands for without depends on the transport model."""
+
+    def of_program(options):
+        return tuple(dataclasses.replace(o, transports=known[o.words[0]]) for o in options)
+
+    singles = [
+        dataclasses.replace(sampler, options=of_program(sampler.options))
+        for sampler in SINGLE
+        if sampler.options[0].words[0] in known
+    ]
     together = [sampler for sampler in singles if sampler.in_best]
-    best = sum((sampler.options for sampler in together), option("--sampling", "best"))
-    plain = option("--sampling", "plain")
+    best = sum((sampler.options for sampler in together), of_program(option("--sampling", "best")))
+    plain = of_program(option("--sampling", "plain"))
     independent = all(sampler.independent for sampler in together)
     found = [Sampler(PLAIN, plain), Sampler(BEST, best, independent)]
     found += [dataclasses.replace(s, options=plain + s.options) for s in singles]
-    left_out = [sampler.name for sampler in SINGLE if sampler not in singles]
+    left_out = [s.name for s in SINGLE if s.name not in {single.name for single in singles}]
     return {sampler.name: sampler for sampler in found}, left_out

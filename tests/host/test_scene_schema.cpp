@@ -5,8 +5,8 @@
 #include "host/scene/settings/schema.hpp"
 #include "host/scene/settings/settings.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/paths.hpp"
 #include "tests/support/input_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_stokes.hpp"
 
 using namespace stokes;
@@ -53,7 +53,7 @@ std::string scene_text(Transport transport, const std::string& render) {
 TEST_CASE("The schema file is what the program prints", "[scene_schema]") {
     const Outcome printed = run_stokes("schema");
     CHECK(printed.code == 0);
-    CHECK(file_content(STOKES_SOURCE_DIR "/scenes/scene.schema.json") == printed.out);
+    CHECK(file_content(source_path("scenes/scene.schema.json")) == printed.out);
 }
 
 TEST_CASE("Every definition of the schema is referred to, and every reference is defined", "[scene_schema]") {
@@ -78,7 +78,7 @@ TEST_CASE("Every setting has a key and a flag of its own", "[scene_schema]") {
 TEST_CASE("Help, schema and documents say the same sentence of a setting", "[scene_schema]") {
     const std::string help = in_one_line(run_stokes("render --help").out);
     const Json schema = scene_schema().at("$defs");
-    const std::string guide = file_content(STOKES_SOURCE_DIR "/scenes/README.md");
+    const std::string guide = file_content(source_path("scenes/README.md"));
     for (const Setting& setting : settings()) {
         INFO(setting.key);
         CHECK_THAT(help, Contains(setting.flag()) && Contains(setting.sentence()));

@@ -54,7 +54,8 @@ Stored measured(Scene scene, Branches branches, int exits, std::uint32_t seed, b
     scene.render.exits = exits;
     scene.render.seed = seed;
     PhotonPasses passes(scene, photons);
-    if (even) passes.pass.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene, passes.on_device), photons));
+    if (even)
+        passes.pass.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene, passes.on_device), photons));
     PassWavelengths wavelengths = pass_wavelengths(RenderSettings{}, 0);
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) wavelengths.set[k] = 330 + 20 * static_cast<int>(k);
     Stored stored;

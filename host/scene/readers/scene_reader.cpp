@@ -6,13 +6,13 @@
 #include "host/core/error.hpp"
 #include "host/core/json_cursor.hpp"
 #include "host/core/text_input.hpp"
+#include "host/scene/readers/camera_reader.hpp"
 #include "host/scene/readers/light_reader.hpp"
 #include "host/scene/readers/material_reader.hpp"
 #include "host/scene/readers/shape_reader.hpp"
 #include "host/scene/readers/spectrum_reader.hpp"
-#include "host/scene/settings/settings_reader.hpp"
-#include "host/scene/readers/camera_reader.hpp"
 #include "host/scene/settings/object.hpp"
+#include "host/scene/settings/settings_reader.hpp"
 
 namespace stokes {
 

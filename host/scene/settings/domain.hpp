@@ -6,8 +6,8 @@
 #include <string>
 #include <variant>
 
-#include "host/core/words.hpp"
 #include "host/core/json_cursor.hpp"
+#include "host/core/words.hpp"
 
 namespace stokes {
 

@@ -11,7 +11,7 @@ namespace {
 using Given = RenderSettings;
 using Resolved = ResolvedSettings;
 
-constexpr IntegerRange lambda_range{300, 830};
+constexpr IntegerRange lambda_range{first_lambda_nm, last_lambda_nm};
 constexpr IntegerRange pixel_range{1, 16384};
 constexpr Transport paper = Transport::paper, conserving = Transport::conserving, walk = Transport::walk;
 

@@ -1,7 +1,7 @@
 // Shapes of a scene file, and the steps of their transforms.
+#include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/mask.hpp"
 #include "host/scene/settings/objects.hpp"
-#include "host/scene/mesh/shapes.hpp"
 
 namespace stokes {
 namespace {
