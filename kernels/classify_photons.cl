@@ -1,10 +1,10 @@
 // Stage 3 of a pass: what happens to each photon where it landed, and the lists that the next stages work through.
-#include "lib/first_collision.clh"
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/light_sum.clh"
 #include "lib/retrace.clh"
 #include "lib/rng.clh"
+#include "lib/surface.clh"
 #include "lib/surface_normal.clh"
 #include "shared/arguments.h"
 #include "shared/material.h"
@@ -24,40 +24,7 @@ FORCE_INLINE float3 hit_position(Ray ray, Hit hit, __global const Triangle* tri)
     return along ? origin + direction * hit.t : v0 + e1 * hit.u + e2 * hit.v;
 }
 
-// True where light of this branch of a translucent material meets a fluorophore. Model `paper` and surface
-// fluorescence: with probability c, PHYSICS STEP 1, the paper's section 3.3. Model `conserving`: at the first
-// collision, with the probability of lib/first_collision.clh. Model `walk` decides at each collision below the surface.
-FORCE_INLINE bool meets_fluorophore(__global const MaterialRecord* material, __global const float16* spectra,
-                                    uint transport, Random4 draw) {
-    if (material->medium == STOKES_NONE || transport == STOKES_TRANSPORT_PAPER)
-        return draw.a < material->fluorescent_fraction;
-    if (transport == STOKES_TRANSPORT_WALK || material->reradiation_row == STOKES_NONE) return false;
-    __global const float16* sigma_t = &spectra[material->sigma_row];
-    const float16 weights = collision_weights(*sigma_t, collision_way(sigma_t, draw.c, draw.d));
-    return draw.a < uptake_probability(weights, uptake_of(material, spectra));
-}
-
-// True where some of the light of this flux meets a fluorophore below the surface, and some need not.
-FORCE_INLINE bool has_branches(__global const MaterialRecord* material, __global const float16* spectra, float16 flux) {
-    const float c = material->fluorescent_fraction;
-    if (material->medium == STOKES_NONE || material->reradiation_row == STOKES_NONE || !(c > 0.0f)) return false;
-    return sum16(flux * spectra[material->excitation_row]) > 0.0f;
-}
-
-// What a path does next where it meets the front of a surface at incidence cosine cos_in. branches: as in EventRound.
-FORCE_INLINE uint choose_event(__global const MaterialRecord* material, __global const float16* spectra, uint transport,
-                               bool branches, float cos_in, float16 flux, Random4 draw) {
-    if (material->kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
-    if (material->kind != STOKES_TRANSLUCENT) return STOKES_EVENT_NONE;
-    if (material->exit_scale > 0.0f && draw.b < external_reflectance(cos_in, material->eta))
-        return STOKES_EVENT_SPECULAR;
-    if (branches && has_branches(material, spectra, flux)) return STOKES_EVENT_BRANCHES;
-    if (meets_fluorophore(material, spectra, transport, draw))
-        return material->reradiation_row == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_FLUORESCENCE;
-    return material->medium == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_ELASTIC;
-}
-
-// Where a path of this event is listed; transport: of the body below the surface.
+// Where a path of this event is listed; transport: of the material.
 FORCE_INLINE uint list_of(uint event, uint transport) {
     if (event == STOKES_EVENT_DIFFUSE) return STOKES_LIST_DIFFUSE;
     if (event >= STOKES_EVENT_FLUORESCENCE) return STOKES_LIST_BELOW(transport, event);
@@ -99,9 +66,9 @@ __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMEN
 
     const float cos_in = min(-dot(direction, normal), 1.0f);
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
-    const uint kind = cos_in > 0.0f ? choose_event(&materials[material], spectra, pass->transport, round.branches != 0u,
-                                                   cos_in, flux[path], draw)
-                                    : STOKES_EVENT_NONE;
+    const uint kind = cos_in > 0.0f
+                          ? photon_event(&materials[material], spectra, round.branches != 0u, cos_in, flux[path], draw)
+                          : STOKES_EVENT_NONE;
     if (kind == STOKES_EVENT_SPECULAR) {
         ledger->reflections += 1u;
         continue_path(&rays[path], ledger, &round, pass->offset_mm, position, normal, reflect_at(direction, normal),
@@ -111,10 +78,7 @@ __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMEN
         add_light(&ledger->absorbed, total);
         ledger->fate = STOKES_FATE_ABSORBED;
     }
-    entry_lists[i] =
-        (uchar)list_of(kind, materials[material].medium == STOKES_NONE && pass->transport == STOKES_TRANSPORT_WALK
-                                 ? STOKES_TRANSPORT_CONSERVING
-                                 : pass->transport);
+    entry_lists[i] = (uchar)list_of(kind, materials[material].transport);
 }
 
 // Work-items: chunks of chunk_size list entries.

@@ -47,7 +47,7 @@ FORCE_INLINE PlanePoint conserving_exit(float3 entry, float3 normal, float3 dire
     const float depth = max(-dot(within, normal), 0.0f) * p.way_mm;
     const float3 foot = entry + within * p.way_mm + normal * depth;
     if (sampler == STOKES_SAMPLER_DIRECT) {
-        const bool fresnel = material->exit_scale > 0.0f;
+        const bool fresnel = has(material, STOKES_MATERIAL_FRESNEL);
         const float critical = fresnel ? sqrt(1.0f - 1.0f / (material->eta * material->eta)) : 0.0f;
         const float mu = max(critical + (1.0f - critical) * draw.a, 1e-6f);
         const float transmitted = fresnel ? 1.0f - internal_reflectance(mu, material->eta) : 1.0f;
@@ -107,7 +107,7 @@ __kernel void sample_exits(EventRound round, PASS_ARGUMENTS, __global const Mate
     const float3 entry = (float3)(point.x, point.y, point.z), normal = (float3)(point.nx, point.ny, point.nz);
     __global const MaterialRecord* material = &materials[point.material];
     const uint first = round.first_exit + i * round.exits;
-    if (material->medium == STOKES_NONE) {
+    if (!has(material, STOKES_MATERIAL_SUBSURFACE)) {
         for (uint k = 0u; k < round.exits; ++k) {
             const float scale = round.sampler == STOKES_SAMPLER_SCATTERED || k > 0u ? 0.0f : 1.0f;
             store_exit((PlanePoint){entry, 0.0f, 0.0f, 0.0f, scale}, -1.0f, path, &point, &exits[first + k],
@@ -140,14 +140,14 @@ __kernel void sample_exits(EventRound round, PASS_ARGUMENTS, __global const Mate
 }
 
 // Work-items: count exits. Reads: probes, hits of trace_probe, triangles.
-// Writes: position and normal of exits; r_mm made negative where the probe found no surface.
+// Writes: position and normal of exits; found = 0 where the probe found no surface.
 __kernel void place_exits(uint count, __global const Triangle* triangles, __global const Probe* probes,
                           __global const Hit* probe_hits, __global ExitPoint* exits) {
     const uint i = (uint)get_global_id(0);
     if (i >= count || probes[i].body == STOKES_NONE) return;
     const Hit hit = probe_hits[i];
     if (hit.triangle == STOKES_NONE) {
-        exits[i].r_mm = -fmax(exits[i].r_mm, FLT_MIN);
+        exits[i].found = 0u;
         return;
     }
     __global const Triangle* tri = &triangles[hit.triangle];
@@ -176,7 +176,7 @@ FORCE_INLINE Collision collide(__global const MaterialRecord* material, __global
                                __global const PassConstants* pass, bool fluorescent, bool both, float way_mm,
                                float16 flux, LightHistory light, __private uint* leader) {
     Collision result;
-    if (material->medium == STOKES_NONE) {
+    if (!has(material, STOKES_MATERIAL_SUBSURFACE)) {
         result.taken_up = flux * spectra[material->excitation_row];
         result.sent_on = reemit(&spectra[material->reradiation_row], flux, pass, light, leader);
         return result;
@@ -223,10 +223,10 @@ FORCE_INLINE EventLight event_light_of(__global const MaterialRecord* material, 
 FORCE_INLINE float16 let_through(const ExitPoint* exit_point, uint exit_index, const EventRound* round,
                                  __global const MaterialRecord* material, __global const float16* spectra,
                                  __global const TableShape* table_shapes, __global const float16* table16) {
-    if (material->medium == STOKES_NONE) return (float16)(1.0f);
+    if (!has(material, STOKES_MATERIAL_SUBSURFACE)) return (float16)(1.0f);
     if (round->sampler == STOKES_SAMPLER_DIRECT) return exp(-spectra[material->sigma_row] * exit_point->row);
     if (round->sampler == STOKES_SAMPLER_INTEGRATED) return table16[exit_index];
-    return power_table_at(table16, table_shapes[material->medium * 3u + round->component], fabs(exit_point->r_mm),
+    return power_table_at(table16, table_shapes[material->medium * 3u + round->component], exit_point->r_mm,
                           exit_point->row);
 }
 
@@ -261,7 +261,7 @@ __kernel void deposit_exits(EventRound round, PASS_ARGUMENTS, __global const Mat
 
     for (uint k = 0u; k < round.exits; ++k) {
         const ExitPoint exit_point = exits[first + k];
-        const bool found = exit_point.r_mm >= 0.0f;
+        const bool found = exit_point.found != 0u;
         const float16 leaving = event.sent_on * exit_point.scale *
                                 let_through(&exit_point, first + k, &round, material, spectra, table_shapes, table16);
         const float2 kept = light_of(leaving, pass);

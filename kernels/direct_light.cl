@@ -2,7 +2,7 @@
 #include "lib/bvh.clh"
 #include "lib/film.clh"
 #include "lib/inline.clh"
-#include "lib/light_area.clh"
+#include "lib/lights.clh"
 #include "lib/rng.clh"
 #include "lib/sampling.clh"
 #include "lib/texture.clh"
@@ -32,64 +32,6 @@ FORCE_INLINE float2 spread_over_passes(__global const PassConstants* pass, uint 
 FORCE_INLINE float spread_alone(__global const PassConstants* pass, uint pixel, uint event) {
     const Random4 start = random4(pass->seed, 0u, pixel, event, RNG_DIRECT);
     return uniform_from_bits(((uint)(start.a * 0x1p24f) << 8) + 0x8CB92BA7u * pass->pass);
-}
-
-// What a point is lit by along one shadow ray: factor times the light's row of the pass's emission is the irradiance
-// [W mm^-2 nm^-1] where nothing lies on the ray; 0: it is dark.
-typedef struct Shadow {
-    Ray ray;
-    float factor;
-} Shadow;
-
-// of a beam: its photons start at the section.
-FORCE_INLINE Shadow shadow_of_beam(__global const LightRecord* light, float3 at, float3 normal, float3 from) {
-    const float3 centre = (float3)(light->px, light->py, light->pz);
-    const float3 direction = (float3)(light->dx, light->dy, light->dz);
-    const float3 u = (float3)(light->ux, light->uy, light->uz), v = (float3)(light->vx, light->vy, light->vz);
-    const float3 way = at - centre;
-    const float x = dot(way, u) / dot(u, u), y = dot(way, v) / dot(v, v);
-    const bool inside = light->kind == STOKES_LIGHT_BEAM_DISK ? x * x + y * y < 1.0f : fmax(fabs(x), fabs(y)) < 1.0f;
-    const float cosine = -dot(direction, normal);
-    Shadow shadow;
-    shadow.factor = inside && dot(way, direction) >= 0.0f ? fmax(cosine, 0.0f) : 0.0f;
-    shadow.ray =
-        (Ray){from.x, from.y, from.z, 0.0f, -direction.x, -direction.y, -direction.z, dot(from - centre, direction)};
-    return shadow;
-}
-
-// True where a point lies so near to a surface light that few of its points could bring nearly all the light.
-FORCE_INLINE bool is_near(__global const LightRecord* light, float area, float3 at) {
-    const float away = distance(at, (float3)(light->px, light->py, light->pz)) - light->ball_mm;
-    return light->kind == STOKES_LIGHT_SURFACE && (away <= 0.0f || away * away < area);
-}
-
-// Irradiance per radiance of a direction that is drawn by a light's area, picked times in the mean, and where the light
-// is near also by the cosine: the balance heuristic (Veach and Guibas 1995). At most pi where the light is near.
-FORCE_INLINE float light_factor(float picked, float area, float squared, float cos_light, float cosine, bool near) {
-    const float density = picked * squared / (area * cos_light);
-    return cosine / (density + (near ? cosine * M_1_PI_F : 0.0f));
-}
-
-// of a point of a surface light, uniform in area: its photons start offset_mm above it, cosine-distributed.
-FORCE_INLINE Shadow shadow_of_surface(__global const LightRecord* light, __global const float* light_areas,
-                                      __global const Triangle* triangles, float2 u, float picked, float offset_mm,
-                                      float3 at, float3 normal, float3 from) {
-    const float area = light_areas[light->first_area + light->triangle_count - 1u];
-    const LightPoint point = point_on_light(light, light_areas, triangles, u);
-    const float3 front = point.normal, start = point.position + front * offset_mm;
-    const float3 way = start - at;
-    const float squared = dot(way, way), cosines = dot(way, normal), cos_light = -dot(way, front);
-    Shadow shadow;
-    shadow.factor = 0.0f;
-    const float3 ray = start - from;
-    const float length = sqrt(dot(ray, ray));
-    shadow.ray = (Ray){from.x, from.y, from.z, 0.0f, ray.x / length, ray.y / length, ray.z / length, length};
-    if (cosines > 0.0f && cos_light > 0.0f) {
-        const float scale = rsqrt(squared);
-        shadow.factor =
-            light_factor(picked, area, squared, cos_light * scale, cosines * scale, is_near(light, area, at));
-    }
-    return shadow;
 }
 
 // How often a light is picked by a point, in the mean.
@@ -132,7 +74,8 @@ __kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, 
     const GatherPoint point = gather_points[i];
     const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const float3 at = (float3)(point.x, point.y, point.z), normal = (float3)(point.nx, point.ny, point.nz);
-    const float3 from = at + normal * pass->offset_mm;
+    const LitPoint to = {at, normal, at + normal * pass->offset_mm};
+    const Lights of_scene = {lights, light_areas, triangles};
     const float16 reflected =
         M_1_PI_F * textured_reflectance(texture_records, spectra, point.material, point.luminance);
     const float pick = spread_alone(pass, point.pixel, 0u);
@@ -142,17 +85,9 @@ __kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, 
         const uint l = light_count <= MOST_LIGHTS
                            ? k
                            : pick_light(lights, light_count, ((float)k + pick) * (1.0f / (float)MOST_LIGHTS));
-        const float picked = times_picked(lights, light_count, l);
-        __global const LightRecord* light = &lights[l];
-        Shadow shadow;
-        if (light->kind == STOKES_LIGHT_SURFACE) {
-            near |= is_near(light, light_areas[light->first_area + light->triangle_count - 1u], at);
-            shadow = shadow_of_surface(light, light_areas, triangles, spread_over_passes(pass, point.pixel, 2u + k),
-                                       picked, pass->offset_mm, at, normal, from);
-        } else {
-            shadow = shadow_of_beam(light, at, normal, from);
-            shadow.factor /= picked;
-        }
+        const Shadow shadow = shadow_of(of_scene, l, spread_over_passes(pass, point.pixel, 2u + k),
+                                        times_picked(lights, light_count, l), pass->offset_mm, to);
+        near |= shadow.near;
         if (!(shadow.factor > 0.0f)) continue;
         const float4 lit = film_value(light_radiance[l] * reflected, pass);
         if (lit.x + lit.y + lit.z > 0.0f && !bvh_any(scene, shadow.ray)) sum += shadow.factor * lit;
@@ -161,20 +96,12 @@ __kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, 
         const float2 u = spread_over_passes(pass, point.pixel, 1u);
         const float3 d = cosine_direction(normal, u.x, u.y);
         const BvhFilter all = {BVH_BOTH, 0u, 0};
-        const Hit hit = bvh_closest(scene, (Ray){from.x, from.y, from.z, 0.0f, d.x, d.y, d.z, INFINITY}, all);
+        const Ray ray = {to.from.x, to.from.y, to.from.z, 0.0f, d.x, d.y, d.z, INFINITY};
+        const Hit hit = bvh_closest(scene, ray, all);
         const uint l = hit.triangle == STOKES_NONE ? STOKES_NONE : shapes[triangles[hit.triangle].shape].light;
-        if (l != STOKES_NONE) {
-            __global const LightRecord* light = &lights[l];
-            __global const Triangle* tri = &triangles[hit.triangle];
-            const float area = light_areas[light->first_area + light->triangle_count - 1u];
-            const float3 front =
-                normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z), (float3)(tri->e2x, tri->e2y, tri->e2z)));
-            const float cos_light = -dot(d, front);
-            if (cos_light > 0.0f && is_near(light, area, at))
-                sum += light_factor(times_picked(lights, light_count, l), area, hit.t * hit.t, cos_light,
-                                    fmax(dot(d, normal), 0.0f), true) *
-                       film_value(light_radiance[l] * reflected, pass);
-        }
+        if (l != STOKES_NONE)
+            sum += factor_where_met(of_scene, l, hit.triangle, hit.t, d, times_picked(lights, light_count, l), to) *
+                   film_value(light_radiance[l] * reflected, pass);
     }
     film[STOKES_MAP_SURFACE * count + point.pixel] += sum;
 }

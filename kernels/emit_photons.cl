@@ -2,6 +2,7 @@
 #include "lib/emission.clh"
 #include "lib/inline.clh"
 #include "lib/light_sum.clh"
+#include "lib/lights.clh"
 #include "lib/rng.clh"
 #include "shared/arguments.h"
 #include "shared/light.h"
@@ -9,14 +10,15 @@
 #include "shared/path.h"
 #include "shared/ray.h"
 
-// Writes the state of a path that starts with this flux.
-FORCE_INLINE void start_path(uint path, float3 origin, float3 direction, float16 start,
-                             __global const PassConstants* pass, __global Ray* rays, __global float16* flux,
-                             __global PathLedger* ledgers, __global uint* list) {
+// Writes the state of a path that starts along a ray; photon_flux: of one of its light's photons.
+FORCE_INLINE void start_path(uint path, EmittedRay ray, float16 photon_flux, __global const PassConstants* pass,
+                             __global Ray* rays, __global float16* flux, __global PathLedger* ledgers,
+                             __global uint* list) {
+    const float16 start = photon_flux * ray.share;
     const float2 total = light_of(start, pass);
     const bool dark = !(total.x > 0.0f);
-    rays[path] =
-        (Ray){origin.x, origin.y, origin.z, 0.0f, direction.x, direction.y, direction.z, dark ? -1.0f : INFINITY};
+    rays[path] = (Ray){ray.origin.x,    ray.origin.y,    ray.origin.z,    0.0f,
+                       ray.direction.x, ray.direction.y, ray.direction.z, dark ? -1.0f : INFINITY};
     flux[path] = start;
     const LightSum none = {0.0f, 0.0f};
     ledgers[path] = (PathLedger){{total.x, total.y},
@@ -53,11 +55,9 @@ __kernel void emit_photons(__global const PassConstants* pass, LIGHT_ARGUMENTS, 
     const Random4 to = random4(pass->seed, pass->pass, path, 0u, RNG_EMIT_DIRECTION);
     uint light_index = 0u;
     while (light_index + 1u < light_count && at.a >= lights[light_index].cumulative_probability) ++light_index;
-    __global const LightRecord* light = &lights[light_index];
-
-    const EmittedRay start =
-        emitted_ray(light, light_areas, triangles, pass->offset_mm, (float4)(at.b, at.c, to.a, to.b));
-    start_path(path, start.origin, start.direction, photon_flux[light_index], pass, rays, flux, ledgers, list);
+    const EmittedRay start = emitted_ray((Lights){lights, light_areas, triangles}, light_index, pass->offset_mm,
+                                         (float4)(at.b, at.c, to.a, to.b));
+    start_path(path, start, photon_flux[light_index], pass, rays, flux, ledgers, list);
 }
 
 // Work-items: pass->photons, one a path.
@@ -74,17 +74,15 @@ __kernel void emit_stratified(__global const PassConstants* pass, EMISSION_ARGUM
     const uint path = (uint)get_global_id(0);
     if (path >= pass->photons) return;
     const uint c = cell_of_photon(first_photons, cell_count, path);
-    __global const LightRecord* light = &lights[cells[c].light];
-    const bool directions = light->kind == STOKES_LIGHT_SURFACE;
+    const uint light = cells[c].light;
     const SequencePoint point = point_of_photon(pass, &cells[c], c, path - first_photons[c]);
-    const uint2 words = words_of_event(point, directions);
+    const uint2 words = words_of_event(point, lights[light].dimensions);
     event_samples[path] = (EventSample){words.x, words.y};
-    const float4 place = place_of_point(point, &cells[c], directions);
-    const EmittedRay start = emitted_ray(light, light_areas, triangles, pass->offset_mm, place);
+    const float4 place = place_of_point(point, &cells[c], lights[light].dimensions);
+    const EmittedRay start = emitted_ray((Lights){lights, light_areas, triangles}, light, pass->offset_mm, place);
     const uint count = first_photons[c + 1u] - first_photons[c];
     const float weight = cells[c].probability * (float)pass->photons / (float)count;
-    start_path(path, start.origin, start.direction, photon_flux[cells[c].light] * weight, pass, rays, flux, ledgers,
-               list);
+    start_path(path, start, photon_flux[light] * weight, pass, rays, flux, ledgers, list);
 }
 
 // Work-items: pass->photons, one a path. Reads as emit_stratified. Writes: where that starts them: cell_of_path [paths]
@@ -96,5 +94,5 @@ __kernel void find_places(__global const PassConstants* pass, EMISSION_ARGUMENTS
     const uint c = cell_of_photon(first_photons, cell_count, path);
     cell_of_path[path] = c;
     places[path] = place_of_point(point_of_photon(pass, &cells[c], c, path - first_photons[c]), &cells[c],
-                                  lights[cells[c].light].kind == STOKES_LIGHT_SURFACE);
+                                  lights[cells[c].light].dimensions);
 }

@@ -14,15 +14,15 @@ FORCE_INLINE float3 triangle_normal(__global const Triangle* tri) {
     return normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z), (float3)(tri->e2x, tri->e2y, tri->e2z)));
 }
 
-// Work-items: count exits, of which those that found no surface (r_mm < 0) are looked after.
-// Reads: probes: their point of the tangent plane; the scene. Writes: exits, r_mm positive where a surface was found.
+// Work-items: count exits, of which those that found no surface are looked after.
+// Reads: probes: their point of the tangent plane; the scene. Writes: exits, found = 1 where there is one.
 // A point of the plane that lies beyond the edge by x comes to lie on the face behind the edge, at x from it, as a
 // sheet of paper does when it is folded down: light that would have left beyond the edge leaves through that face. The
 // edge is found by a ray that comes back from the point towards the entry, a little below the plane.
 __kernel void fold_exits(uint count, __global const PassConstants* pass, RAY_SCENE_ARGUMENTS,
                          __global const Triangle* triangles, __global const Probe* probes, __global ExitPoint* exits) {
     const uint i = (uint)get_global_id(0);
-    if (i >= count || !(exits[i].r_mm < 0.0f)) return;
+    if (i >= count || exits[i].found != 0u) return;
     const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const uint body = probes[i].body;
     const BvhFilter front = {BVH_FRONT, body, triangles};
@@ -57,7 +57,7 @@ __kernel void fold_exits(uint count, __global const PassConstants* pass, RAY_SCE
         exits[i].nx = outward.x;
         exits[i].ny = outward.y;
         exits[i].nz = outward.z;
-        exits[i].r_mm = -exits[i].r_mm;
+        exits[i].found = 1u;
         return;
     }
 }

@@ -1,9 +1,10 @@
 // What the camera rays see: light that surfaces emit, and the density estimate over the photon maps.
 // Surfaces have a front only, the side of their outward normal; their back is black, unless they are two-sided.
 #include "lib/film.clh"
-#include "lib/fresnel.clh"
 #include "lib/gather.clh"
 #include "lib/inline.clh"
+#include "lib/lights.clh"
+#include "lib/surface.clh"
 #include "lib/surface_normal.clh"
 #include "lib/texture.clh"
 #include "lib/tiles.clh"
@@ -14,25 +15,15 @@
 #include "shared/photon.h"
 #include "shared/ray.h"
 
-// The maps whose photons light a material.
-FORCE_INLINE uint maps_of(MaterialRecord material) {
-    if (material.kind == STOKES_DIFFUSE) return 1u << STOKES_MAP_SURFACE;
-    if (material.kind != STOKES_TRANSLUCENT) return 0u;
-    if (material.medium == STOKES_NONE) return 1u << STOKES_MAP_FLUORESCENCE;
-    return (1u << STOKES_MAP_FLUORESCENCE) | (1u << STOKES_MAP_SINGLE) | (1u << STOKES_MAP_MULTIPLE);
-}
-
 // Work-items: one per camera ray, in the order of lib/tiles.clh. Finds the point each ray sees, and adds the
 // light it emits to the film's surface layer.
-// A material with Fresnel reflection is seen with the probability 1 - R of trace_reflections: the light from below it
-// leaves as (1 - R) exit_scale, PHYSICS section 4, so that its weight is exit_scale; light that the surface itself
-// emits is the same in all directions, and is divided by 1 - R.
-// Reads rays, hits [width * height], triangles, shapes, materials, textures of the scene, emitted[lights]
+// Reads rays, hits [width * height], triangles, shapes, materials, lights, textures of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
 // Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
 __kernel void collect_points(CameraRecord camera, __global const PassConstants* pass, SURFACE_ARGUMENTS,
-                             __global const float16* light_radiance, TEXTURE_ARGUMENTS, __global const Ray* rays,
-                             __global const Hit* hits, __global GatherPoint* gather_points, __global float4* film) {
+                             LIGHT_ARGUMENTS, __global const float16* light_radiance, TEXTURE_ARGUMENTS,
+                             __global const Ray* rays, __global const Hit* hits, __global GatherPoint* gather_points,
+                             __global float4* film) {
     const uint i = (uint)get_global_id(0);
     const uint pixels = camera.width * camera.height;
     if (i >= pixels) return;
@@ -61,16 +52,12 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
         point.luminance = texture_luminance(textures, shape.material, hit);
         const float cos_in = -(normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz);
         if (cos_in > 0.0f) {
-            const MaterialRecord material = materials[shape.material];
-            float16 emission = shape.light == STOKES_NONE ? (float16)(0.0f) : light_radiance[shape.light];
-            point.maps = maps_of(material);
-            if (material.exit_scale > 0.0f) {
-                point.weight = material.exit_scale;
-                // 2^-24: the steps of the draw.
-                emission /= max(1.0f - external_reflectance(min(cos_in, 1.0f), material.eta), 0x1p-24f);
-            }
+            const SeenSurface seen = seen_surface(&materials[shape.material], min(cos_in, 1.0f));
+            point.maps = seen.maps;
+            point.weight = seen.weight;
             if (shape.light != STOKES_NONE)
-                film[STOKES_MAP_SURFACE * pixels + point.pixel] += film_value(emission, pass);
+                film[STOKES_MAP_SURFACE * pixels + point.pixel] +=
+                    film_value(radiance_of(&lights[shape.light], light_radiance[shape.light]) / seen.share, pass);
         }
     }
     gather_points[i] = point;

@@ -4,6 +4,7 @@
 #include "lib/exit_points.clh"
 #include "lib/integrated_distance.clh"
 #include "lib/integrated_power.clh"
+#include "lib/material.clh"
 #include "shared/arguments.h"
 #include "shared/material.h"
 #include "shared/pass.h"
@@ -25,7 +26,7 @@ __kernel void draw_exits(EventRound round, __global const PassConstants* pass, _
     __global const MaterialRecord* material = &materials[point.material];
     PlanePoint p = {entry, 0.0f, 0.0f, 0.0f, 1.0f};
     float reach = -1.0f;
-    if (material->medium != STOKES_NONE) {
+    if (has(material, STOKES_MATERIAL_SUBSURFACE)) {
         const DistanceMixture mixture = mixtures[material->medium];
         const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
         const float row = min(refraction_angle_deg(-dot(direction, normal), material->eta), mixture.theta_max_deg);
@@ -39,7 +40,7 @@ __kernel void draw_exits(EventRound round, __global const PassConstants* pass, _
 }
 
 // Work-items: round.count exits of round.component, from round.first_exit on.
-// Reads: exits (r_mm of either sign, row: refraction angle [deg]), materials, media [media].
+// Reads: exits (r_mm, row: refraction angle [deg]), materials, media [media].
 // Writes: power [exit]: T_F [mm], T_S [1] or T_M [1/mm^2] at the pass's wavelengths; nothing without subsurface.
 __kernel void integrate_power(EventRound round, __global const MaterialRecord* materials,
                               __global const PassMedium* media, __global const ExitPoint* exits,
@@ -47,9 +48,10 @@ __kernel void integrate_power(EventRound round, __global const MaterialRecord* m
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     __global const ExitPoint* exit_point = &exits[round.first_exit + i];
-    const uint medium = materials[exit_point->material].medium;
-    if (medium == STOKES_NONE) return;
-    const float r_mm = fabs(exit_point->r_mm);
+    __global const MaterialRecord* material = &materials[exit_point->material];
+    if (!has(material, STOKES_MATERIAL_SUBSURFACE)) return;
+    const uint medium = material->medium;
+    const float r_mm = exit_point->r_mm;
     const float16 sigma_s = vload16(0, media[medium].sigma_s), sigma_a = vload16(0, media[medium].sigma_a);
     const float16 sigma_t = sigma_s + sigma_a;
     const RefractionAngle angle = refraction_of(exit_point->row);

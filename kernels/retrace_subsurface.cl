@@ -5,13 +5,14 @@
 #include "lib/light_sum.clh"
 #include "lib/reradiation.clh"
 #include "lib/retrace.clh"
+#include "lib/surface.clh"
 #include "shared/arguments.h"
 #include "shared/material.h"
 #include "shared/photon.h"
 
 // What was to leave where there is no surface.
 FORCE_INLINE float2 missed_light(const ExitPoint* exit_point) {
-    return exit_point->r_mm < 0.0f ? light_in(exit_point->kept) : (float2)(0.0f);
+    return exit_point->found != 0u ? (float2)(0.0f) : light_in(exit_point->kept);
 }
 
 // Model `paper`. Work-items: round.count exits of the fluorescence component.
@@ -43,7 +44,7 @@ __kernel void retrace_fluorescence(EventRound round, PASS_ARGUMENTS, __global co
     add_light(&ledger->created, max(-in_medium, 0.0f));
     add_light(&ledger->stokes_loss, taken_up - converted);
 
-    if (exit_point.r_mm < 0.0f) {
+    if (exit_point.found == 0u) {
         add_light(&ledger->dropped, kept);
         end_path(&rays[path], ledger, STOKES_FATE_MISSED_EXIT);
         return;
@@ -102,7 +103,7 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
     const float at = draw.a * max(incident.x, kept.x);
     const bool ended = !(at < kept.x);
     const ExitPoint chosen = at < single.kept.energy ? single : multiple;
-    if (ended || chosen.r_mm < 0.0f) {
+    if (ended || chosen.found == 0u) {
         add_light(&ledger->roulette, kept - missed);
         end_path(&rays[path], ledger, ended ? STOKES_FATE_ABSORBED : STOKES_FATE_MISSED_EXIT);
         return;
@@ -169,7 +170,7 @@ __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const 
         return;
     }
     // On the surface what is not taken up is absorbed; below it, the rest met another branch, or another way.
-    add_light(material->medium == STOKES_NONE ? &ledger->absorbed : &ledger->roulette, incident - a.taken_up);
+    add_light(has(material, STOKES_MATERIAL_SUBSURFACE) ? &ledger->roulette : &ledger->absorbed, incident - a.taken_up);
     add_light(&ledger->stokes_loss, a.stokes_loss);
     add_light(&ledger->absorbed, a.absorbed);
     add_light(&ledger->dropped, a.missed);
@@ -188,7 +189,7 @@ __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const 
         }
     const bool ended = entry == STOKES_NONE;
     const ExitPoint chosen = exits[groups.first_exit[group] + (ended ? i * round.exits : entry)];
-    if (ended || chosen.r_mm < 0.0f) {
+    if (ended || chosen.found == 0u) {
         add_light(&ledger->roulette, a.kept - a.missed);
         end_path(&rays[path], ledger, ended ? STOKES_FATE_ABSORBED : STOKES_FATE_MISSED_EXIT);
         return;

@@ -3,6 +3,7 @@
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/rng.clh"
+#include "lib/surface.clh"
 #include "lib/tiles.clh"
 #include "shared/arguments.h"
 #include "shared/camera.h"
@@ -15,9 +16,9 @@
 #define MOST_REFLECTIONS 64u
 
 // Work-items: one per camera ray, in the order of lib/tiles.clh. Where a ray meets the front of a material with Fresnel
-// reflection (exit_scale > 0) it is mirrored with the probability that reflectance gives, and traced on; otherwise, and
+// reflection it is mirrored with the probability that reflectance gives, and traced on; otherwise, and
 // everywhere else, it ends. A ray that ends on such a front carries no factor: seeing it by chance 1 - R stands for the
-// transmittance, exit_scale is left to collect_points.
+// transmittance; the rest is left to collect_points.
 // Reads: the scene, pass (seed, pass, offset_mm). Reads and writes rays[width * height]: of a mirrored ray the last
 // segment is left, which starts offset_mm above the surface.
 // Reads and writes hits[width * height]: the nearest intersection along those, STOKES_NONE without one and after
@@ -36,8 +37,8 @@ __kernel void trace_reflections(CameraRecord camera, __global const PassConstant
         if (reflections > 0u) hit = bvh_closest(scene, ray, all);
         if (hit.triangle == STOKES_NONE) break;
         const Triangle t = triangles[hit.triangle];
-        const MaterialRecord material = materials[shapes[t.shape].material];
-        if (!(material.exit_scale > 0.0f)) break;
+        __global const MaterialRecord* material = &materials[shapes[t.shape].material];
+        if (!has(material, STOKES_MATERIAL_FRESNEL)) break;
         const float3 e1 = (float3)(t.e1x, t.e1y, t.e1z), e2 = (float3)(t.e2x, t.e2y, t.e2z);
         const float3 normal = normalize(cross(e1, e2));
         const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
@@ -45,7 +46,7 @@ __kernel void trace_reflections(CameraRecord camera, __global const PassConstant
         if (!(cos_in > 0.0f)) break;
         // Event 0 is the place in the pixel.
         const Random4 draw = random4(pass->seed, pass->pass, pixel, reflections + 1u, RNG_CAMERA);
-        if (!(draw.a < external_reflectance(cos_in, material.eta))) break;
+        if (!mirrors_camera_ray(material, cos_in, draw.a)) break;
         if (reflections == MOST_REFLECTIONS) {
             hit.triangle = STOKES_NONE;
             break;

@@ -3,6 +3,7 @@
 #include "lib/light_sum.clh"
 #include "lib/normal.clh"
 #include "lib/retrace.clh"
+#include "lib/surface.clh"
 #include "lib/walk.clh"
 #include "shared/arguments.h"
 #include "shared/photon.h"

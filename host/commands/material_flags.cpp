@@ -125,8 +125,7 @@ ProbeMaterial material_of(const CLI::App& command, const MaterialFlags& flags) {
     material.medium = medium_of(flags);
     material.fresnel = flags.fresnel;
     if (together(command, {"--fraction", "--excitation", "--emission"})) {
-        material.fluorophore = fluorophore_of(flags);
-        material.fluorescent_fraction = flags.fraction;
+        material.dyes = {{fluorophore_of(flags), flags.fraction}};
     } else if (command.count("--quantum-yield")) {
         throw InputError("--quantum-yield: expected --fraction, --excitation and --emission as well");
     }

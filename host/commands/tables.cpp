@@ -34,10 +34,6 @@ void create_folder(const std::string& folder) {
     if (error) throw RunError(fmt::format("{}: cannot create folder: {}", folder, error.message()));
 }
 
-bool needs_tables(const Material& material) {
-    return material.kind == MaterialKind::translucent && material.subsurface && material.medium >= 0;
-}
-
 void write_tables(const std::vector<PowerTable>& tables, const std::string& material, const fs::path& folder) {
     for (const PowerTable& table : tables) {
         const std::string path = (folder / fmt::format("{}.{}.json", material, table.component)).string();
@@ -53,7 +49,7 @@ void run_tables(const TablesOptions& options) {
     for (std::size_t i = 0; i < scene.media.size(); ++i) {
         std::vector<PowerTable> tables;
         for (const Material& material : scene.materials) {
-            if (!needs_tables(material) || static_cast<std::size_t>(material.medium) != i) continue;
+            if (medium_of(material) != static_cast<int>(i)) continue;
             if (tables.empty()) {
                 const Medium& m = scene.media[i];
                 const MediumSpectra medium{m.name, m.sigma_s, m.sigma_a, m.eta, m.dipole_eta};

@@ -80,9 +80,7 @@ std::string curved_line(const Worst& most_curved, const Length& diffuse) {
 }
 
 // "" where every body of this material is as good as a half-space.
-std::string failure(const Scene& scene, int material) {
-    const Medium& medium =
-        scene.media[static_cast<std::size_t>(scene.materials[static_cast<std::size_t>(material)].medium)];
+std::string failure(const Scene& scene, int material, const Medium& medium) {
     const Length reach = longest_reach(scene, medium, opaque_mean_free_paths);
     const Length diffuse = longest_reach(scene, medium, 1.0);
     Worst thinnest, most_curved;
@@ -115,7 +113,8 @@ std::vector<std::string> model_remarks(const Scene& scene) {
     }
     std::string names;
     for (const Material& material : scene.materials)
-        if (material.fresnel) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
+        if (const auto* translucent = as_translucent(material); translucent != nullptr && translucent->fresnel)
+            names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
     if (!names.empty())
         lines.push_back(fmt::format("{}: materials: transport \"paper\" leaves out the Fresnel reflection of {}",
                                     scene.file, names));
@@ -127,8 +126,9 @@ std::vector<std::string> failed_assumptions(const Scene& scene) {
     if (scene.render.transport == Transport::walk) return lines;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
-        if (material.kind != MaterialKind::translucent || !material.subsurface) continue;
-        const std::string failed = failure(scene, static_cast<int>(i));
+        const std::optional<int> medium = medium_of(material);
+        if (!medium) continue;
+        const std::string failed = failure(scene, static_cast<int>(i), scene.media[static_cast<std::size_t>(*medium)]);
         if (failed.empty()) continue;
         lines.push_back(fmt::format("{}: materials.{}: {}; transport \"{}\" takes it for a half-space", scene.file,
                                     material.name, failed, word_of(scene.render.transport)));

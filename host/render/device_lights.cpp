@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/overloaded.hpp"
+
 namespace stokes {
 
 namespace {
@@ -18,7 +20,34 @@ void set_ball(LightRecord& record, const Mesh& mesh) {
     for (const glm::vec3& p : mesh.positions_mm) record.ball_mm = std::max(record.ball_mm, glm::length(p - centre));
 }
 
+void set_beam(LightRecord& record, const Beam& beam) {
+    const glm::vec3 p(beam.position_mm), d(glm::normalize(beam.direction)), u(beam.half_u_mm), v(beam.half_v_mm);
+    record.px = p.x, record.py = p.y, record.pz = p.z;
+    record.dx = d.x, record.dy = d.y, record.dz = d.z;
+    record.ux = u.x, record.uy = u.y, record.uz = u.z;
+    record.vx = v.x, record.vy = v.y, record.vz = v.z;
+}
+
+// Appends the record's triangles to areas, the cumulative ones of all surface lights. Returns their sum [mm^2].
+double add_areas(LightRecord& record, const std::vector<Triangle>& triangles, std::vector<float>& areas) {
+    record.first_area = static_cast<std::uint32_t>(areas.size());
+    double area = 0.0;
+    for (std::uint32_t t = 0; t < record.triangle_count; ++t) {
+        const Triangle& tri = triangles[record.first_triangle + t];
+        area +=
+            0.5 * glm::length(glm::cross(glm::dvec3(tri.e1x, tri.e1y, tri.e1z), glm::dvec3(tri.e2x, tri.e2y, tri.e2z)));
+        areas.push_back(static_cast<float>(area));
+    }
+    return area;
+}
+
+double product_of_half_axes(const Beam& beam) { return glm::length(beam.half_u_mm) * glm::length(beam.half_v_mm); }
+
 }  // namespace
+
+unsigned place_dimensions(const Light& light) {
+    return std::visit(Overloaded{[](const SurfaceLight&) { return 4u; }, [](const Beam&) { return 2u; }}, light.kind);
+}
 
 LightTables light_tables(const Scene& scene, const std::vector<double>& probability,
                          const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& first_triangle) {
@@ -29,31 +58,27 @@ LightTables light_tables(const Scene& scene, const std::vector<double>& probabil
         LightRecord record{};
         cumulative += probability[i];
         record.cumulative_probability = i + 1 == scene.lights.size() ? 1.0f : static_cast<float>(cumulative);
-        double area = 0.0;
-        if (light.kind == LightKind::surface) {
-            const auto shape = static_cast<std::size_t>(light.shape);
-            set_ball(record, scene.shapes[shape].mesh);
+        record.dimensions = place_dimensions(light);
+        const auto surface = [&](const SurfaceLight& of) {
+            const auto shape = static_cast<std::size_t>(of.shape);
             record.kind = STOKES_LIGHT_SURFACE;
             record.first_triangle = first_triangle[shape];
             record.triangle_count = first_triangle[shape + 1] - first_triangle[shape];
-            record.first_area = static_cast<std::uint32_t>(tables.areas.size());
-            for (std::uint32_t t = 0; t < record.triangle_count; ++t) {
-                const Triangle& tri = triangles[record.first_triangle + t];
-                area += 0.5 * glm::length(glm::cross(glm::dvec3(tri.e1x, tri.e1y, tri.e1z),
-                                                     glm::dvec3(tri.e2x, tri.e2y, tri.e2z)));
-                tables.areas.push_back(static_cast<float>(area));
-            }
-        } else {
-            record.kind = light.section == BeamSection::disk ? STOKES_LIGHT_BEAM_DISK : STOKES_LIGHT_BEAM_RECTANGLE;
-            const glm::vec3 p(light.position_mm), d(glm::normalize(light.direction)), u(light.half_u_mm),
-                v(light.half_v_mm);
-            record.px = p.x, record.py = p.y, record.pz = p.z;
-            record.dx = d.x, record.dy = d.y, record.dz = d.z;
-            record.ux = u.x, record.uy = u.y, record.uz = u.z;
-            record.vx = v.x, record.vy = v.y, record.vz = v.z;
-        }
+            set_ball(record, scene.shapes[shape].mesh);
+            return M_PI * add_areas(record, triangles, tables.areas);
+        };
+        const auto disk = [&](const DiskBeam& beam) {
+            record.kind = STOKES_LIGHT_BEAM_DISK;
+            set_beam(record, beam);
+            return M_PI * product_of_half_axes(beam);
+        };
+        const auto rectangle = [&](const RectangleBeam& beam) {
+            record.kind = STOKES_LIGHT_BEAM_RECTANGLE;
+            set_beam(record, beam);
+            return 4.0 * product_of_half_axes(beam);
+        };
+        tables.spread.push_back(std::visit(Overloaded{surface, disk, rectangle}, light.kind));
         tables.records.push_back(record);
-        tables.surface_area_mm2.push_back(area);
     }
     return tables;
 }

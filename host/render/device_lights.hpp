@@ -11,10 +11,15 @@
 namespace stokes {
 
 struct LightTables {
-    std::vector<LightRecord> records;      // [lights]
-    std::vector<float> areas;              // cumulative area of the triangles of each surface light [mm^2]
-    std::vector<double> surface_area_mm2;  // [lights], 0 for beams
+    std::vector<LightRecord> records;  // [lights]
+    std::vector<float> areas;          // cumulative area of the triangles of each surface light [mm^2]
+    // [lights]: flux over it is the radiance of a surface, pi times its area [mm^2 sr], or the irradiance across a
+    // beam, the area of its section [mm^2].
+    std::vector<double> spread;
 };
+
+// Coordinates of a place in the light's cube (lib/lights.clh): 4 of a surface, which emits in many directions, else 2.
+unsigned place_dimensions(const Light& light);
 
 // probability: of a photon to start at each light; first_triangle: of each shape in triangles, and one past the last.
 LightTables light_tables(const Scene& scene, const std::vector<double>& probability,

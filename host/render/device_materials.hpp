@@ -8,13 +8,10 @@
 
 namespace stokes {
 
-// Light goes below its surface.
-bool has_subsurface(const Material& material);
+// Its surface reflects specularly, with that transport.
+bool reflects(const Material& material, Transport transport);
 
-// Its surface reflects specularly, with the scene's transport.
-bool reflects(const Scene& scene, const Material& material);
-
-// [materials]
-std::vector<MaterialRecord> material_records(const Scene& scene);
+// [materials], as that transport has them.
+std::vector<MaterialRecord> material_records(const Scene& scene, Transport transport);
 
 }  // namespace stokes

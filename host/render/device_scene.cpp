@@ -53,17 +53,17 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     rays = RayScene(device, all);
     triangles = Buffer<Triangle>(device, "triangles", all);
     shapes = Buffer<ShapeRecord>(device, "shapes", shape_records);
-    materials = Buffer<MaterialRecord>(device, "materials", material_records(scene));
+    materials = Buffer<MaterialRecord>(device, "materials", material_records(scene, scene.render.transport));
     textures = upload_textures(device, scene);
 
     light_probability = light_probabilities(scene);
     const LightTables tables_of_lights = light_tables(scene, light_probability, all, first_triangle);
     lights = Buffer<LightRecord>(device, "lights", tables_of_lights.records);
     light_areas = Buffer<float>(device, "light areas", tables_of_lights.areas);
-    light_surface_area_mm2 = tables_of_lights.surface_area_mm2;
+    light_spread = tables_of_lights.spread;
     light_count = static_cast<std::uint32_t>(scene.lights.size());
     has_fresnel = std::any_of(scene.materials.begin(), scene.materials.end(),
-                              [&](const Material& material) { return reflects(scene, material); });
+                              [&](const Material& material) { return reflects(material, scene.render.transport); });
     bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));
 
     const SceneExtent extent = scene_extent(scene);

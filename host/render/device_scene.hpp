@@ -30,7 +30,7 @@ struct DeviceScene {
     Buffer<float> light_areas;                     // cumulative area of the triangles of each surface light [mm^2]
     bool has_fresnel = false;                      // some material reflects specularly
     std::vector<double> light_probability;         // per light
-    std::vector<double> light_surface_area_mm2;    // per light, 0 for beams
+    std::vector<double> light_spread;              // per light, LightTables::spread
     float offset_mm = 0.0f;                        // rays start this far off a surface
     glm::vec3 minimum_mm{0.0f}, maximum_mm{0.0f};  // bounding box
     std::uint32_t light_count = 0;

@@ -29,9 +29,8 @@ DeviceTextures upload_textures(const Device& device, const Scene& scene) {
     std::vector<TextureRecord> records;
     std::vector<float> texels;
     std::map<const Picture*, std::uint32_t> first_texel;
-    std::uint32_t textures = 0;
-    for (const Material& material : scene.materials) {
-        const Picture* picture = material.texture.get();
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const Picture* picture = texture_of(scene.materials[m]);
         if (picture == nullptr) {
             records.push_back({0, 0, 0, STOKES_NONE});
             continue;
@@ -43,11 +42,11 @@ DeviceTextures upload_textures(const Device& device, const Scene& scene) {
             texels.insert(texels.end(), picture->luminance.begin(), picture->luminance.end());
         }
         records.push_back({static_cast<std::uint32_t>(picture->width), static_cast<std::uint32_t>(picture->height),
-                           first_texel[picture], layout.white_row(textures++)});
+                           first_texel[picture], layout.white_row[m]});
     }
     if (records.empty()) records.push_back({0, 0, 0, STOKES_NONE});
     std::vector<TriangleUv> uv(1);
-    if (textures > 0)
+    if (!texels.empty())
         uv = triangle_uvs(scene);
     else
         texels.push_back(0.0f);

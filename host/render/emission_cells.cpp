@@ -77,7 +77,7 @@ class Partition {
     void judge(Box& box) const {
         box.gain = 0.0;
         if (box.end - box.begin < least_samples) return;
-        const std::size_t dimensions = lights_[box.light].directions ? 4 : 2;
+        const std::size_t dimensions = lights_[box.light].dimensions;
         std::array<std::array<double, slices>, 4> square{}, count{};
         for (std::size_t i = box.begin; i < box.end; ++i)
             for (std::size_t d = 0; d < dimensions; ++d) {

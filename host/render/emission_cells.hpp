@@ -12,7 +12,7 @@ namespace stokes {
 // A photon of a trial pass: where it started and what it brought.
 struct EmissionSample {
     std::uint32_t light = 0;
-    std::array<float, 4> place{};  // in the light's cube, as lib/emission.clh has it
+    std::array<float, 4> place{};  // in the light's cube, as lib/lights.clh has it
     // Square of its value in the picture, had it the flux of random emission, times how many photons of random emission
     // it stands for, over their number in all trials: the sum over a part's samples estimates the part's share of the
     // mean square.
@@ -22,7 +22,7 @@ struct EmissionSample {
 // One of the lights, as far as emission is concerned.
 struct EmittingLight {
     double probability = 0.0;  // of a photon of random emission to be its own; together 1
-    bool directions = false;   // a surface, whose place has four coordinates; beams have two
+    unsigned dimensions = 2;   // coordinates of its places, up to 4
 };
 
 class EmissionCells {

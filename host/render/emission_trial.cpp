@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "host/render/device_lights.hpp"
+
 namespace stokes {
 
 std::vector<EmittingLight> emitting_lights(const Scene& scene, const DeviceScene& on_device) {
     std::vector<EmittingLight> lights;
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        lights.push_back({on_device.light_probability[i], scene.lights[i].kind == LightKind::surface});
+        lights.push_back({on_device.light_probability[i], place_dimensions(scene.lights[i])});
     return lights;
 }
 

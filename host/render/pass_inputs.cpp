@@ -13,7 +13,7 @@ PassInputs::PassInputs(const Device& device, const Scene& scene, const DeviceSce
       on_device_(on_device),
       strata_(stratified_wavelengths(scene)),
       constants_(device, "pass constants", 1),
-      rows_(device, "spectra of the pass", SpectraLayout(scene).row_count()),
+      rows_(device, "spectra of the pass", SpectraLayout(scene).row_count),
       photon_flux_(device, "photon flux of the lights", scene.lights.size()),
       radiance_(device, "radiance of the lights", scene.lights.size()) {}
 
@@ -22,8 +22,8 @@ void PassInputs::prepare(std::uint32_t pass, std::uint32_t photons) {
 }
 
 void PassInputs::prepare(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons) {
-    spectra_ = make_pass_spectra(scene_, on_device_.light_probability, on_device_.light_surface_area_mm2, wavelengths,
-                                 pass, photons);
+    spectra_ =
+        make_pass_spectra(scene_, on_device_.light_probability, on_device_.light_spread, wavelengths, pass, photons);
     spectra_.constants.offset_mm = on_device_.offset_mm;
     spectra_.constants.low_discrepancy_exits = has_cells() ? 1u : 0u;
     constants_.upload(&spectra_.constants, 1);

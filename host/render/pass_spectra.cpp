@@ -28,15 +28,19 @@ Flux16 starting(const Spectrum& spectrum, const PassWavelengths& wavelengths, do
     return result;
 }
 
-std::uint32_t transport_code(Transport transport) {
-    return transport == Transport::paper        ? STOKES_TRANSPORT_PAPER
-           : transport == Transport::conserving ? STOKES_TRANSPORT_CONSERVING
-                                                : STOKES_TRANSPORT_WALK;
-}
-
-double section_area_mm2(const Light& beam) {
-    const double sides = glm::length(beam.half_u_mm) * glm::length(beam.half_v_mm);
-    return beam.section == BeamSection::disk ? M_PI * sides : 4.0 * sides;
+// The rows of a material's fluorophores together, from first on: sums of each one's own, by their weights.
+void add_dyes(const TranslucentMaterial& material, const Scene& scene, const PassWavelengths& wavelengths,
+              Flux16* first) {
+    const std::vector<double> weights = dye_weights(material.dyes);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        const Fluorophore& dye = scene.fluorophores[static_cast<std::size_t>(material.dyes[k].fluorophore)];
+        const auto add = [weight = static_cast<float>(weights[k])](Flux16& to, const Flux16& row) {
+            for (std::size_t i = 0; i < STOKES_WAVELENGTHS; ++i) to.v[i] += weight * row.v[i];
+        };
+        add(*first, sampled(dye.excitation, wavelengths.set));
+        const auto rows = reradiation_rows(dye, scene.render.transport, wavelengths);
+        for (std::size_t ex = 0; ex < rows.size(); ++ex) add(first[1 + ex], rows[ex]);
+    }
 }
 
 PassConstants make_constants(const RenderSettings& render, const PassWavelengths& wavelengths, std::uint32_t pass,
@@ -61,19 +65,23 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
     constants.seed = render.seed;
     constants.pass = pass;
     constants.photons = photons;
-    constants.transport = transport_code(render.transport);
     constants.first_collision_only = render.first_collision_only ? 1 : 0;
     return constants;
 }
 
 }  // namespace
 
-SpectraLayout::SpectraLayout(const Scene& scene)
-    : materials(static_cast<std::uint32_t>(scene.materials.size())),
-      fluorophores(static_cast<std::uint32_t>(scene.fluorophores.size())),
-      media(static_cast<std::uint32_t>(scene.media.size())),
-      textures(static_cast<std::uint32_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
-                                                        [](const Material& m) { return m.texture != nullptr; }))) {}
+SpectraLayout::SpectraLayout(const Scene& scene) : row_count(static_cast<std::uint32_t>(scene.materials.size())) {
+    for (const Material& material : scene.materials) {
+        excitation_row.push_back(row_count);
+        if (const auto* translucent = as_translucent(material); translucent != nullptr && !translucent->dyes.empty())
+            row_count += 1 + STOKES_WAVELENGTHS;
+        white_row.push_back(row_count);
+        if (texture_of(material) != nullptr) ++row_count;
+    }
+    first_sigma_row = row_count;
+    row_count += 2 * static_cast<std::uint32_t>(scene.media.size());
+}
 
 // Given k wavelengths of a path in the set, the next is in it with probability (n - k)/(N - k).
 PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pass) {
@@ -99,6 +107,14 @@ std::vector<double> light_probabilities(const Scene& scene) {
                          std::to_string(scene.render.lambda_max_nm) + " nm");
     for (double& p : power) p /= total;
     return power;
+}
+
+std::vector<double> dye_weights(const std::vector<Dye>& dyes) {
+    const double sum = fluorescent_fraction(dyes);
+    std::vector<double> weights;
+    for (const Dye& dye : dyes)
+        weights.push_back(sum > 0.0 ? dye.fraction / sum : 1.0 / static_cast<double>(dyes.size()));
+    return weights;
 }
 
 std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
@@ -128,40 +144,41 @@ std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluor
 }
 
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
-                              const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons) {
-    return make_pass_spectra(scene, probabilities, surface_area_mm2, pass_wavelengths(scene.render, pass), pass,
-                             photons);
+                              const std::vector<double>& light_spread, std::uint32_t pass, std::uint32_t photons) {
+    return make_pass_spectra(scene, probabilities, light_spread, pass_wavelengths(scene.render, pass), pass, photons);
 }
 
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
-                              const std::vector<double>& surface_area_mm2, const PassWavelengths& wavelengths,
+                              const std::vector<double>& light_spread, const PassWavelengths& wavelengths,
                               std::uint32_t pass, std::uint32_t photons) {
     const WavelengthSet& set = wavelengths.set;
     PassSpectra result;
     result.constants = make_constants(scene.render, wavelengths, pass, photons);
-    for (const Material& material : scene.materials) result.rows.push_back(sampled(material.reflectance, set));
-    for (const Fluorophore& fluorophore : scene.fluorophores) {
-        result.rows.push_back(sampled(fluorophore.excitation, set));
-        for (const Flux16& row : reradiation_rows(fluorophore, scene.render.transport, wavelengths))
-            result.rows.push_back(row);
-    }
-    for (const Medium& medium : scene.media) {
-        Flux16 sigma_t{}, albedo{};
-        for (std::size_t i = 0; i < set.size(); ++i) {
-            const double s = medium.sigma_s.at(set[i]), t = s + medium.sigma_a.at(set[i]);
-            sigma_t.v[i] = static_cast<float>(t);
-            albedo.v[i] = static_cast<float>(s / t);
+    const SpectraLayout layout(scene);
+    result.rows.resize(layout.row_count);
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const Material& material = scene.materials[m];
+        if (const DiffuseMaterial* diffuse = as_diffuse(material)) {
+            result.rows[m] = sampled(diffuse->reflectance, set);
+            if (diffuse->texture) result.rows[layout.white_row[m]] = sampled(diffuse->white, set);
+        } else if (const TranslucentMaterial* translucent = as_translucent(material)) {
+            add_dyes(*translucent, scene, wavelengths, &result.rows[layout.excitation_row[m]]);
         }
-        result.rows.push_back(sigma_t);
-        result.rows.push_back(albedo);
     }
-    for (const Material& material : scene.materials)
-        if (material.texture) result.rows.push_back(sampled(material.white, set));
+    for (std::size_t m = 0; m < scene.media.size(); ++m) {
+        Flux16* sigma_t = &result.rows[layout.sigma_row(static_cast<int>(m))];
+        Flux16* albedo = sigma_t + 1;
+        for (std::size_t i = 0; i < set.size(); ++i) {
+            const double s = scene.media[m].sigma_s.at(set[i]), t = s + scene.media[m].sigma_a.at(set[i]);
+            sigma_t->v[i] = static_cast<float>(t);
+            albedo->v[i] = static_cast<float>(s / t);
+        }
+    }
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const Light& light = scene.lights[i];
         const double p = probabilities[i];
         result.photon_flux.push_back(starting(light.flux, wavelengths, p > 0.0 ? 1.0 / (p * photons) : 0.0));
-        const double spread = light.kind == LightKind::surface ? M_PI * surface_area_mm2[i] : section_area_mm2(light);
+        const double spread = light_spread[i];
         result.radiance.push_back(starting(light.flux, wavelengths, spread > 0.0 ? 1.0 / spread : 0.0));
     }
     return result;

@@ -12,22 +12,15 @@
 
 namespace stokes {
 
-// Where rows of the pass's spectra stand: a row is one Flux16.
-// [0, materials): reflectance; then one excitation row and 16 re-radiation rows a fluorophore; then sigma_t
-// [1/mm] and albedo of each medium; then the white reflectance of each material that has a texture.
+// Where rows of the pass's spectra stand: a row is one Flux16. Row i is the reflectance of material i.
 struct SpectraLayout {
     explicit SpectraLayout(const Scene& scene);
-    std::uint32_t excitation_row(int fluorophore) const {
-        return materials + static_cast<std::uint32_t>(fluorophore) * 17;
-    }
-    std::uint32_t reradiation_row(int fluorophore) const { return excitation_row(fluorophore) + 1; }
-    std::uint32_t sigma_row(int medium) const {
-        return materials + fluorophores * 17 + static_cast<std::uint32_t>(medium) * 2;
-    }
-    // texture: number of the material among those with a texture.
-    std::uint32_t white_row(std::uint32_t texture) const { return materials + fluorophores * 17 + media * 2 + texture; }
-    std::uint32_t row_count() const { return white_row(textures); }
-    std::uint32_t materials, fluorophores, media, textures;
+    // Of sigma_t [1/mm]; the albedo stands in the next one.
+    std::uint32_t sigma_row(int medium) const { return first_sigma_row + 2 * static_cast<std::uint32_t>(medium); }
+    // By material. Of its fluorophores together the excitation, before 16 rows of re-radiation; of its texture the
+    // white reflectance. Void where it has none.
+    std::vector<std::uint32_t> excitation_row, white_row;
+    std::uint32_t first_sigma_row = 0, row_count = 0;
 };
 
 // Those of a render's pass: drawn uniformly, PHYSICS section 2.
@@ -35,7 +28,7 @@ PassWavelengths pass_wavelengths(const RenderSettings& render, std::uint32_t pas
 
 struct PassSpectra {
     PassConstants constants;   // all but offset_mm
-    std::vector<Flux16> rows;  // SpectraLayout::row_count() rows
+    std::vector<Flux16> rows;  // as SpectraLayout has them
     // Per light, times the wavelengths' rarity: flux of one photon [W/nm], all lights' probabilities included, and
     // radiance of its surface [W mm^-2 sr^-1 nm^-1], for beams the irradiance across them [W mm^-2 nm^-1].
     std::vector<Flux16> photon_flux, radiance;
@@ -45,12 +38,15 @@ struct PassSpectra {
 // InputError when no light has any power there.
 std::vector<double> light_probabilities(const Scene& scene);
 
-// surface_area_mm2: per light, of its emitting surface (beams: unused).
+// light_spread: per light, LightTables::spread.
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
-                              const std::vector<double>& surface_area_mm2, std::uint32_t pass, std::uint32_t photons);
+                              const std::vector<double>& light_spread, std::uint32_t pass, std::uint32_t photons);
 PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& probabilities,
-                              const std::vector<double>& surface_area_mm2, const PassWavelengths& wavelengths,
+                              const std::vector<double>& light_spread, const PassWavelengths& wavelengths,
                               std::uint32_t pass, std::uint32_t photons);
+
+// Each dye's share of what meets the fluorophores of a material: c_k/c, which add up to 1.
+std::vector<double> dye_weights(const std::vector<Dye>& dyes);
 
 // Re-radiation matrix at a wavelength set: [ex][em], 0 unless em > ex (Stokes). Flux at ex [W/nm] times it is flux at
 // em [W/nm]. Model `paper`, eq. 1-2: conversion E(ex) F(em) pair weight.

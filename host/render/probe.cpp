@@ -23,7 +23,7 @@ void check(const ProbeMaterial& material, const ProbeSettings& s) {
         if (!good) throw InputError(fmt::format("probe: expected {}", what));
     };
     const auto covered = [](int lambda) { return lambda >= first_lambda_nm && lambda <= last_lambda_nm; };
-    expect(material.medium || material.fluorophore, "a medium, a fluorophore or both");
+    expect(material.medium || !material.dyes.empty(), "a medium, a fluorophore or both");
     expect(s.angle_deg >= 0.0 && s.angle_deg <= 89.9, "an angle of incidence in [0, 89.9] deg");
     expect(s.photons >= least_probe_photons && s.photons <= 1000000000000, "photons in [64, 1e12]");
     expect(covered(s.lambda_min_nm) && covered(s.lambda_max_nm) &&
@@ -115,11 +115,15 @@ ProbeGrid HalfSpaceProbe::Bench::probe_grid(int lambda_ex_nm) const {
     const auto place = std::lower_bound(grid.lambda_nm.begin(), grid.lambda_nm.end(), lambda_ex_nm);
     if (place == grid.lambda_nm.end() || *place != lambda_ex_nm) grid.lambda_nm.insert(place, lambda_ex_nm);
 
-    const auto emits = [&](int lambda) {
-        return lambda > lambda_ex_nm && material.fluorophore->emission.at(lambda) > 0.0;
+    // Light that one dye emits may be taken up by another.
+    const auto some_dye = [&](const auto& has) {
+        return std::any_of(material.dyes.begin(), material.dyes.end(),
+                           [&](const ProbeDye& dye) { return dye.fraction > 0.0 && has(dye.fluorophore); });
     };
-    const bool fluoresces = material.fluorophore && material.fluorescent_fraction > 0.0 &&
-                            material.fluorophore->excitation.at(lambda_ex_nm) > 0.0;
+    const auto emits = [&](int lambda) {
+        return lambda > lambda_ex_nm && some_dye([&](const Fluorophore& dye) { return dye.emission.at(lambda) > 0.0; });
+    };
+    const bool fluoresces = some_dye([&](const Fluorophore& dye) { return dye.excitation.at(lambda_ex_nm) > 0.0; });
     if (fluoresces) std::copy_if(grid_nm.begin(), grid_nm.end(), std::back_inserter(grid.emitting), emits);
 
     const bool again = fluoresces && settings.transport == Transport::walk && !settings.first_collision_only;

@@ -16,12 +16,16 @@
 
 namespace stokes {
 
+struct ProbeDye {
+    Fluorophore fluorophore;
+    double fraction = 0.0;  // in [0, 1], of all dyes together at most 1
+};
+
 struct ProbeMaterial {
     std::string name;
-    std::optional<Medium> medium;            // none: surface fluorescence
-    std::optional<Fluorophore> fluorophore;  // there where there is no medium
-    double fluorescent_fraction = 0.0;       // c in [0, 1]
-    bool fresnel = false;                    // conserving, walk
+    std::optional<Medium> medium;  // none: surface fluorescence
+    std::vector<ProbeDye> dyes;    // one at least where there is no medium
+    bool fresnel = false;          // conserving, walk
 };
 
 // A scene's translucent material. InputError when there is none of that name, or it is not translucent.

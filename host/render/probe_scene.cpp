@@ -62,21 +62,17 @@ Scene probe_scene(const ProbeMaterial& source, const ProbeSettings& settings) {
     scene.render.wavelengths = Wavelengths::uniform;  // not drawn: probe_sets() has them
     scene.render.lambda_min_nm = first_lambda_nm;
     scene.render.lambda_max_nm = last_lambda_nm;
-    Material material;
-    material.name = source.name;
-    material.kind = MaterialKind::translucent;
-    material.subsurface = source.medium.has_value();
+    TranslucentMaterial material;
     if (source.medium) {
         scene.media = {*source.medium};
         material.medium = 0;
     }
-    if (source.fluorophore) {
-        scene.fluorophores = {*source.fluorophore};
-        material.fluorophore = 0;
-        material.fluorescent_fraction = source.fluorescent_fraction;
+    for (const ProbeDye& dye : source.dyes) {
+        material.dyes.push_back({static_cast<int>(scene.fluorophores.size()), dye.fraction});
+        scene.fluorophores.push_back(dye.fluorophore);
     }
     material.fresnel = source.fresnel;
-    scene.materials = {material};
+    scene.materials = {{source.name, material}};
 
     // Light leaves up to a million mean free paths away, the paper's within 10 mm.
     const FreePaths mfp = mean_free_paths(source);
@@ -89,32 +85,29 @@ Scene probe_scene(const ProbeMaterial& source, const ProbeSettings& settings) {
     scene.shapes = {shape};
     scene.body_count = 1;
 
-    Light beam;
-    beam.name = "beam";
-    beam.kind = LightKind::beam;
-    beam.flux = line_of(first_lambda_nm);
     const double angle = settings.angle_deg * M_PI / 180.0;
+    DiskBeam beam;
     beam.direction = {std::sin(angle), -std::cos(angle), 0.0};
     beam.position_mm = -0.1 * inner_mm * beam.direction;
-    scene.lights = {beam};
+    scene.lights = {{"beam", line_of(first_lambda_nm), beam}};
     return scene;
 }
 
 ProbeMaterial probe_material(const Scene& scene, const std::string& name) {
     std::string names;
     for (const Material& material : scene.materials) {
-        if (material.kind == MaterialKind::translucent) names += (names.empty() ? "" : ", ") + material.name;
+        const TranslucentMaterial* translucent = as_translucent(material);
+        if (translucent != nullptr) names += (names.empty() ? "" : ", ") + material.name;
         if (material.name != name) continue;
-        if (material.kind != MaterialKind::translucent)
+        if (translucent == nullptr)
             throw InputError(
                 fmt::format("{}: material \"{}\" is not translucent: nothing enters it", scene.file, name));
         ProbeMaterial result;
         result.name = name;
-        if (material.subsurface) result.medium = scene.media[static_cast<std::size_t>(material.medium)];
-        if (material.fluorophore >= 0)
-            result.fluorophore = scene.fluorophores[static_cast<std::size_t>(material.fluorophore)];
-        result.fluorescent_fraction = material.fluorescent_fraction;
-        result.fresnel = material.fresnel;
+        if (translucent->medium) result.medium = scene.media[static_cast<std::size_t>(*translucent->medium)];
+        for (const Dye& dye : translucent->dyes)
+            result.dyes.push_back({scene.fluorophores[static_cast<std::size_t>(dye.fluorophore)], dye.fraction});
+        result.fresnel = translucent->fresnel;
         return result;
     }
     throw InputError(

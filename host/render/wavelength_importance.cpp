@@ -69,8 +69,11 @@ Values squares_of(const Scene& scene, const Range& range) {
         if (lamps.emplace_back(range.of(light.flux)); !(total(lamps.back()) > 0.0)) lamps.pop_back();
     std::set<int> fluorophores;
     for (const Material& material : scene.materials) {
-        if (material.kind == MaterialKind::diffuse) reflectances.push_back(range.of(material.reflectance));
-        if (material.fluorophore >= 0 && material.fluorescent_fraction > 0.0) fluorophores.insert(material.fluorophore);
+        if (const DiffuseMaterial* diffuse = as_diffuse(material))
+            reflectances.push_back(range.of(diffuse->reflectance));
+        if (const TranslucentMaterial* translucent = as_translucent(material))
+            for (const Dye& dye : translucent->dyes)
+                if (dye.fraction > 0.0) fluorophores.insert(dye.fluorophore);
     }
     const double lamp_share = 1.0 / static_cast<double>(lamps.size());
     Values squares(range.size(), 0.0);

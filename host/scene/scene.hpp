@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "host/core/spectrum.hpp"
@@ -52,22 +54,52 @@ struct Fluorophore {
     double quantum_yield = 1.0;  // conserving, walk: photons emitted for each taken up, in [0, 1]
 };
 
-enum class MaterialKind { black, diffuse, translucent };
+struct BlackMaterial {};
+
+struct DiffuseMaterial {
+    Spectrum reflectance = Spectrum::constant(0.0);  // in [0, 1]
+    // A picture without opacity, or none: reflectance + luminance (white - reflectance) where it lies.
+    std::shared_ptr<const Picture> texture;
+    Spectrum white = Spectrum::constant(0.0);  // in [0, 1]
+};
+
+// A fluorophore in a material.
+struct Dye {
+    int fluorophore = -1;   // index into Scene::fluorophores
+    double fraction = 0.0;  // share of collisions that meet it, where its excitation is 1
+};
+
+struct TranslucentMaterial {
+    std::optional<int> medium;  // index into Scene::media; none: light leaves where it came in
+    std::vector<Dye> dyes;      // each fluorophore once; their fractions add up to c of PHYSICS section 3, at most 1
+    bool fresnel = false;       // the surface reflects, outside and within; conserving, walk, with a medium
+};
 
 struct Material {
     std::string name;
-    MaterialKind kind = MaterialKind::black;
-    Spectrum reflectance = Spectrum::constant(0.0);  // diffuse: in [0, 1]
-    // diffuse: a picture without opacity; reflectance + luminance (white - reflectance) where it lies; or
-    // none
-    std::shared_ptr<const Picture> texture;
-    Spectrum white = Spectrum::constant(0.0);  // in [0, 1]
-    int medium = -1;                           // translucent with subsurface: index into Scene::media
-    int fluorophore = -1;                      // translucent: index into Scene::fluorophores, -1: none
-    double fluorescent_fraction = 0.0;         // c in [0, 1]
-    bool subsurface = true;                    // false: surface fluorescence, light leaves where it came in
-    bool fresnel = false;  // the surface reflects, outside and within; conserving, walk, with subsurface only
+    std::variant<BlackMaterial, DiffuseMaterial, TranslucentMaterial> kind;
 };
+
+inline const DiffuseMaterial* as_diffuse(const Material& material) {
+    return std::get_if<DiffuseMaterial>(&material.kind);
+}
+inline const TranslucentMaterial* as_translucent(const Material& material) {
+    return std::get_if<TranslucentMaterial>(&material.kind);
+}
+
+// The medium that light goes into below the surface, or none.
+inline std::optional<int> medium_of(const Material& material) {
+    const TranslucentMaterial* translucent = as_translucent(material);
+    return translucent != nullptr ? translucent->medium : std::nullopt;
+}
+inline double fluorescent_fraction(const std::vector<Dye>& dyes) {
+    return std::accumulate(dyes.begin(), dyes.end(), 0.0,
+                           [](double sum, const Dye& dye) { return sum + dye.fraction; });
+}
+inline const Picture* texture_of(const Material& material) {
+    const DiffuseMaterial* diffuse = as_diffuse(material);
+    return diffuse != nullptr ? diffuse->texture.get() : nullptr;
+}
 
 struct Mesh {
     std::vector<glm::vec3> positions_mm;
@@ -89,22 +121,24 @@ struct Shape {
     Mesh mesh;
 };
 
-enum class LightKind { beam, surface };
-enum class BeamSection { disk, rectangle };
+// Diffuse emission from the front of a shape.
+struct SurfaceLight {
+    int shape = -1;  // index into Scene::shapes
+};
+
+// Parallel light through a flat cross-section at right angles to its direction.
+struct Beam {
+    glm::dvec3 position_mm{0.0};  // centre of the cross-section
+    glm::dvec3 direction{0.0, -1.0, 0.0};
+    glm::dvec3 half_u_mm{0.0}, half_v_mm{0.0};  // half-axes of the cross-section
+};
+struct DiskBeam : Beam {};       // the half-axes are two of its radii
+struct RectangleBeam : Beam {};  // the half-axes are half of its sides
 
 struct Light {
     std::string name;
-    LightKind kind = LightKind::surface;
     Spectrum flux;  // absolute spectral flux [W/nm], over the whole light
-    // surface: one-sided diffuse emission from the front of this shape
-    int shape = -1;
-    // beam: parallel light through a flat cross-section at right angles to direction
-    BeamSection section = BeamSection::disk;
-    glm::dvec3 position_mm{0.0};  // centre of the cross-section
-    glm::dvec3 direction{0.0, -1.0, 0.0};
-    glm::dvec3 half_u_mm{
-        0.0};  // half-axes of the cross-section: of the disk its radii, of the rectangle half its sides
-    glm::dvec3 half_v_mm{0.0};
+    std::variant<SurfaceLight, DiskBeam, RectangleBeam> kind;
 };
 
 struct Scene {

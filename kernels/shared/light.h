@@ -11,7 +11,7 @@
 
 // Written by the host once per scene. A photon of light i carries row i of the pass's photon flux buffer.
 typedef struct LightRecord {
-    unsigned int kind;             // STOKES_LIGHT_*
+    unsigned int kind;             // STOKES_LIGHT_*; any other is dark
     unsigned int first_triangle;   // surface: first of its triangles in the Triangle buffer
     unsigned int triangle_count;   // surface: how many
     float cumulative_probability;  // of choosing one of the lights 0..this, the last is 1
@@ -20,14 +20,14 @@ typedef struct LightRecord {
     float dx, dy, dz;              // beam: direction, unit length
     float ball_mm;                 // surface: radius of that ball
     float ux, uy, uz;              // beam: half-axis of the cross-section [mm]
-    unsigned int pad1;
-    float vx, vy, vz;  // beam: the other half-axis [mm]
+    unsigned int dimensions;       // coordinates of a place in its cube, 2 or 4: lib/lights.clh
+    float vx, vy, vz;              // beam: the other half-axis [mm]
     unsigned int pad2;
 } LightRecord;
 STOKES_ASSERT_SIZE(LightRecord, 80);
 
 // A part of where and whereto a light emits, with a share of the pass's photons: a box in the cube [0, 1]^4 that
-// lib/emission.clh maps onto the light, all of it evenly. Written by the host; they partition the cubes of all lights.
+// lib/lights.clh maps onto the light, all of it evenly. Written by the host; they partition the cubes of all lights.
 typedef struct EmissionCell {
     float low[4], size[4];
     float probability;    // of the box among all that the lights emit at random

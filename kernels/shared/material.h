@@ -9,6 +9,16 @@
 #define STOKES_DIFFUSE 1u
 #define STOKES_TRANSLUCENT 2u
 
+// MaterialRecord.flags, of translucent materials.
+#define STOKES_MATERIAL_SUBSURFACE 1u   // light goes below the surface; else it leaves where it came in
+#define STOKES_MATERIAL_FRESNEL 2u      // the surface reflects, outside and within; only with SUBSURFACE
+#define STOKES_MATERIAL_FLUORESCENT 4u  // there are fluorophores
+
+// MaterialRecord.transport: the models of PHYSICS sections 3, 4 and 5.
+#define STOKES_TRANSPORT_PAPER 0u
+#define STOKES_TRANSPORT_CONSERVING 1u
+#define STOKES_TRANSPORT_WALK 2u
+
 // Written by the host once per scene.
 typedef struct ShapeRecord {
     unsigned int material;  // index into the MaterialRecord buffer
@@ -23,15 +33,17 @@ STOKES_ASSERT_SIZE(ShapeRecord, 8);
 // Written by the host once per scene. A "row" is an index into the pass's spectra: one float16, the value at each
 // of the pass's wavelengths. Row i is the reflectance of material i.
 typedef struct MaterialRecord {
-    unsigned int kind;             // STOKES_BLACK, STOKES_DIFFUSE or STOKES_TRANSLUCENT
-    unsigned int medium;           // owner of its three power tables, or STOKES_NONE: no subsurface
+    unsigned int kind;             // STOKES_BLACK, STOKES_DIFFUSE or STOKES_TRANSLUCENT; any other is black
+    unsigned int flags;            // STOKES_MATERIAL_*
+    unsigned int transport;        // STOKES_TRANSPORT_*: who scatters its light; `walk` only with SUBSURFACE
+    unsigned int medium;           // SUBSURFACE: owner of its three power tables
     float fluorescent_fraction;    // c in [0, 1]: probability of meeting a fluorophore; `conserving`: where E is 1
     float eta;                     // refractive index
-    unsigned int excitation_row;   // of its fluorophore, or STOKES_NONE without one
-    unsigned int reradiation_row;  // first of 16 rows, one an excitation wavelength: flux there -> emitted flux
-    unsigned int sigma_row;        // of its medium: sigma_t [1/mm], and in the next row the albedo; or STOKES_NONE
-    float exit_scale;              // with Fresnel reflection 1/(1 - diffuse reflectance from outside), without it 0
+    unsigned int excitation_row;   // FLUORESCENT: of its fluorophores together
+    unsigned int reradiation_row;  // FLUORESCENT: first of 16, one an excitation wavelength: flux there -> emitted flux
+    unsigned int sigma_row;        // SUBSURFACE: of its medium: sigma_t [1/mm], and in the next row the albedo
+    float exit_scale;              // FRESNEL: 1/(1 - diffuse reflectance from outside)
 } MaterialRecord;
-STOKES_ASSERT_SIZE(MaterialRecord, 32);
+STOKES_ASSERT_SIZE(MaterialRecord, 40);
 
 #endif

@@ -7,11 +7,6 @@
 // Sets drawn in strata have 2^level bands of 16 / 2^level wavelengths each, for levels below this.
 #define STOKES_STRATA_LEVELS 5
 
-// The transport models of PHYSICS sections 3, 4 and 5.
-#define STOKES_TRANSPORT_PAPER 0u
-#define STOKES_TRANSPORT_CONSERVING 1u
-#define STOKES_TRANSPORT_WALK 2u
-
 // Written by the host once per pass.
 typedef struct PassConstants {
     float lambda_nm[16];  // the pass's wavelengths, increasing
@@ -25,7 +20,6 @@ typedef struct PassConstants {
     unsigned int pass;                  // index of the pass, from 0
     unsigned int photons;               // photons emitted in this pass
     float offset_mm;                    // rays start this far above the surface they leave
-    unsigned int transport;             // STOKES_TRANSPORT_*
     unsigned int first_collision_only;  // `walk`: 1: fluorophores take light up at its first collision only
     // 1: the wavelengths are drawn by importance, in strata; chain is void, the rows hold each pair's own weight, and
     // lib/reradiation.clh needs the rest of this.
@@ -35,7 +29,7 @@ typedef struct PassConstants {
     unsigned int strata[16];                   // each wavelength's stratum, 0 to 15, never decreasing
     float level_shares[STOKES_STRATA_LEVELS];  // how often sets are drawn in 1, 2, 4, 8, 16 bands of equal counts
     unsigned int low_discrepancy_exits;  // 1: exits of a photon's first event lie at its EventSample; 0: at random
-    float pad1[2];
+    float pad1[3];
 } PassConstants;
 STOKES_ASSERT_SIZE(PassConstants, 448);
 

@@ -99,11 +99,10 @@ STOKES_ASSERT_SIZE(EventSample, 8);
 #define STOKES_SAMPLER_INTEGRATED \
     3u  // PHYSICS section 3 without tables, by integrate_power.cl; below the same as PAPER
 
-// One subsurface exit. Written by sample_exits, place_exits and deposit_exits.
+// One subsurface exit. Written by sample_exits, place_exits, fold_exits and deposit_exits.
 typedef struct ExitPoint {
     float x, y, z;     // on the surface [mm]
-    float r_mm;        // distance from the entry in the tangent plane, or from the foot of the first collision; negated
-                       // where no surface was found
+    float r_mm;        // distance from the entry in the tangent plane, or from the foot of the first collision
     float nx, ny, nz;  // surface normal there, outward, unit length
     float row;         // PAPER: refraction angle [deg]; DIRECT: way from the first collision to the surface [mm];
                        // SCATTERED: depth of the first collision [mm]
@@ -115,8 +114,9 @@ typedef struct ExitPoint {
     LightSum kept;         // the deposited flux; PAPER: before the branch's weight
     LightSum event_light;  // PAPER: re-emitted as fluorescence; DIRECT: what the first collision sends on; SCATTERED:
                            // what it takes up
+    unsigned int found;    // 1: it lies on the surface; 0: there is none
 } ExitPoint;
-STOKES_ASSERT_SIZE(ExitPoint, 64);
+STOKES_ASSERT_SIZE(ExitPoint, 68);
 
 // One round of events: passed by value to the photon kernels.
 typedef struct EventRound {

@@ -22,11 +22,7 @@ Scene one_thing(const Mesh& mesh) {
     medium.sigma_s = Spectrum::constant(1.5);
     medium.sigma_a = {{599.0, 600.0, 601.0}, {0.01, 0.0025, 0.01}, Outside::hold};
     scene.media = {medium};
-    Material material;
-    material.name = "wax";
-    material.kind = MaterialKind::translucent;
-    material.medium = 0;
-    scene.materials = {material};
+    scene.materials = {{"wax", TranslucentMaterial{0, {}, false}}};
     add_shape(scene, "thing", 0, mesh);
     return scene;
 }
@@ -121,7 +117,7 @@ TEST_CASE("Walks take bodies as they are, and surface fluorescence has no depth"
     scene.render.transport = Transport::walk;
     CHECK(failed_assumptions(scene).empty());
     scene.render.transport = Transport::conserving;
-    scene.materials[0].subsurface = false;
+    translucent_of(scene).medium.reset();
     CHECK(failed_assumptions(scene).empty());
 }
 
@@ -154,7 +150,7 @@ TEST_CASE("What transport paper makes of a scene is said, and only of paper") {
     Fluorophore weak = dye;
     weak.conversion = 0.1;
     scene.fluorophores = {dye, weak};
-    scene.materials[0].fresnel = true;
+    translucent_of(scene).fresnel = true;
     scene.materials.push_back(scene.materials[0]);
     scene.materials[1].name = "soap";
     scene.render.transport = Transport::paper;

@@ -10,7 +10,7 @@ using namespace stokes;
 namespace {
 
 // A beam, a surface, and a light that never shines.
-const std::vector<EmittingLight> lights = {{0.7, false}, {0.3, true}, {0.0, true}};
+const std::vector<EmittingLight> lights = {{0.7, 2}, {0.3, 4}, {0.0, 4}};
 
 double volume(const EmissionCell& cell) {
     double result = lights[cell.light].probability;
@@ -32,7 +32,7 @@ std::vector<EmissionSample> samples_of(std::size_t count, Square square) {
     std::vector<EmissionSample> samples(count);
     for (EmissionSample& sample : samples) {
         sample.light = static_cast<double>(uniform(generator)) < lights[0].probability ? 0 : 1;
-        for (std::size_t d = 0; d < (lights[sample.light].directions ? 4u : 2u); ++d)
+        for (std::size_t d = 0; d < lights[sample.light].dimensions; ++d)
             sample.place[d] = std::min(uniform(generator), 0x1.fffffep-1f);
         sample.square = square(sample) / static_cast<double>(count);
     }
@@ -114,7 +114,7 @@ TEST_CASE("aimed photons go where the light comes from", "[emission]") {
 
 // Of two halves with squares 16 and 1 the shares must be 4 to 1, without an even share.
 TEST_CASE("shares follow the root of the mean square", "[emission]") {
-    const std::vector<EmittingLight> beam = {{1.0, false}};
+    const std::vector<EmittingLight> beam = {{1.0, 2}};
     std::vector<EmissionSample> samples =
         samples_of(100000, [](const EmissionSample& s) { return s.place[0] < 0.5f ? 16.0 : 1.0; });
     for (EmissionSample& sample : samples) sample.light = 0;

@@ -42,10 +42,7 @@ Mesh unwelded(const Mesh& mesh) {
 Scene scene_of(const std::vector<Mesh>& meshes) {
     Scene scene;
     scene.file = "s.json";
-    Material material;
-    material.kind = MaterialKind::translucent;
-    material.medium = 0;
-    scene.materials = {material};
+    scene.materials = {{"wax", TranslucentMaterial{0, {}, false}}};
     for (const Mesh& mesh : meshes) add_shape(scene, "thing " + std::to_string(scene.shapes.size()), 0, mesh).body = 0;
     scene.body_count = 1;
     return scene;
@@ -254,9 +251,8 @@ TEST_CASE("Walking asks nothing of bodies without subsurface light") {
     Mesh open = make_box({2, 2, 2});
     open.triangles.pop_back();
     Scene scene = scene_of({open});
-    scene.materials[0].subsurface = false;
+    scene.materials[0].kind = TranslucentMaterial{};
     CHECK(check_walkable(scene) == std::vector<BodyKind>{BodyKind::open});
-    scene.materials[0].subsurface = true;
-    scene.materials[0].kind = MaterialKind::diffuse;
+    scene.materials[0].kind = DiffuseMaterial{};
     CHECK(check_walkable(scene) == std::vector<BodyKind>{BodyKind::open});
 }

@@ -3,8 +3,11 @@
 
 #include "host/core/error.hpp"
 #include "host/image/colour.hpp"
+#include "host/render/device_lights.hpp"
+#include "host/render/device_materials.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/known_light.hpp"
 #include "tests/support/statistics.hpp"
 
 using namespace stokes;
@@ -13,25 +16,19 @@ namespace {
 
 Spectrum ramp(double at_300, double at_780) { return {{300.0, 780.0}, {at_300, at_780}, Outside::zero}; }
 
-// A surface light, a beam and a dark lamp; two materials and a fluorophore.
+// A surface light, a beam and a dark one; two materials and a fluorophore.
 Scene spectral_scene() {
     Scene scene;
     scene.render.transport = Transport::paper;
     scene.file = "spectra.json";
     scene.render.seed = 5;
-    Light surface, beam, dark;
-    surface.flux = ramp(1.0, 3.0);
-    beam.kind = LightKind::beam;
-    beam.flux = ramp(0.5, 0.0);
-    beam.section = BeamSection::rectangle;
+    Beam beam;
     beam.half_u_mm = {3.0, 0.0, 0.0};
     beam.half_v_mm = {0.0, 0.0, 2.0};
-    dark.flux = Spectrum::constant(0.0);
-    scene.lights = {surface, beam, dark};
-    Material grey, red;
-    grey.reflectance = Spectrum::constant(0.5);
-    red.reflectance = ramp(0.0, 0.9);
-    scene.materials = {grey, red};
+    scene.lights = {{"surface", ramp(1.0, 3.0), SurfaceLight{0}},
+                    {"beam", ramp(0.5, 0.0), RectangleBeam{beam}},
+                    {"dark", Spectrum::constant(0.0), DiskBeam{beam}}};
+    scene.materials = {diffuse_material(0.5), {"red", DiffuseMaterial{ramp(0.0, 0.9), nullptr, {}}}};
     Fluorophore dye;
     dye.excitation = ramp(1.0, 0.0);
     dye.emission = ramp(0.0, 1.0);
@@ -39,7 +36,7 @@ Scene spectral_scene() {
     return scene;
 }
 
-const std::vector<double> area_mm2 = {25.0, 0.0, 4.0};
+const std::vector<double> spread = {M_PI * 25.0, 24.0, 4.0};
 
 }  // namespace
 
@@ -64,7 +61,7 @@ TEST_CASE("the photons of a light carry its flux in the mean", "[pass_spectra]")
     const Scene scene = spectral_scene();
     const std::vector<double> p = light_probabilities(scene);
     constexpr std::uint32_t photons = 10000;
-    const PassSpectra pass = make_pass_spectra(scene, p, area_mm2, 3, photons);
+    const PassSpectra pass = make_pass_spectra(scene, p, spread, 3, photons);
     const WavelengthSet set = draw_wavelengths(5, 3, 300, 780);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         for (std::size_t k = 0; k < set.size(); ++k) {
@@ -77,16 +74,19 @@ TEST_CASE("the photons of a light carry its flux in the mean", "[pass_spectra]")
 TEST_CASE("the radiance of an emitter is its flux over pi and its area, that of a beam its irradiance",
           "[pass_spectra]") {
     Scene scene = spectral_scene();
-    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100);
-    scene.lights[1].section = BeamSection::disk;
-    const PassSpectra round = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 100);
+    scene.shapes.resize(1);  // a square of 5 mm
+    scene.shapes[0].mesh.positions_mm = {{0.0f, 0.0f, 0.0f}, {5.0f, 0.0f, 0.0f}};
+    const std::vector<Triangle> square = {{0, 0, 0, 0, 5, 0, 0, 0, 0, 5, 0, 0}, {5, 5, 0, 0, -5, 0, 0, 0, 0, -5, 0, 0}};
+    const std::vector<double> p = light_probabilities(scene);
+    const LightTables tables = light_tables(scene, p, square, {0, 2});
+    const PassSpectra pass = make_pass_spectra(scene, p, tables.spread, 3, 100);
+    CHECK(tables.spread[2] == Approx(M_PI * 6.0));  // a disk, or an ellipse
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
         const double lambda_nm = pass.constants.lambda_nm[k];
         const double flux = scene.lights[0].flux.at(lambda_nm);
         CHECK(static_cast<double>(pass.radiance[0].v[k]) == Approx(flux / (M_PI * 25.0)).epsilon(1e-6));
         const double beam = scene.lights[1].flux.at(lambda_nm);
         CHECK(static_cast<double>(pass.radiance[1].v[k]) == Approx(beam / 24.0).epsilon(1e-6));
-        CHECK(static_cast<double>(round.radiance[1].v[k]) == Approx(beam / (M_PI * 6.0)).epsilon(1e-6));
         CHECK(pass.radiance[2].v[k] == 0.0f);
     }
 }
@@ -95,23 +95,56 @@ TEST_CASE("rows stand where the layout says", "[pass_spectra]") {
     Scene scene = spectral_scene();
     scene.fluorophores.push_back(scene.fluorophores.front());
     scene.fluorophores.back().conversion = 0.05;
+    for (const int f : {1, 0})
+        scene.materials.push_back({"dyed", TranslucentMaterial{std::nullopt, {{f, 0.3}}, false}});
     const SpectraLayout layout(scene);
-    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 1, 100);
-    REQUIRE(pass.rows.size() == layout.row_count());
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), spread, 1, 100);
+    REQUIRE(pass.rows.size() == layout.row_count);
     const WavelengthSet set = draw_wavelengths(5, 1, 300, 780);
     const auto value = [&](std::uint32_t row, std::size_t k) { return static_cast<double>(pass.rows[row].v[k]); };
     for (std::size_t k = 0; k < set.size(); ++k) {
         CHECK(value(0, k) == 0.5);
-        CHECK(value(1, k) == Approx(scene.materials[1].reflectance.at(set[k])).epsilon(1e-6));
+        CHECK(value(1, k) == Approx(as_diffuse(scene.materials[1])->reflectance.at(set[k])).epsilon(1e-6));
     }
-    for (int f = 0; f < 2; ++f) {
-        const Fluorophore& dye = scene.fluorophores[static_cast<std::size_t>(f)];
+    for (const std::size_t m : {std::size_t{2}, std::size_t{3}}) {
+        const Fluorophore& dye = scene.fluorophores[3 - m];
+        const std::uint32_t excitation = layout.excitation_row[m];
         const auto expected = reradiation_rows(dye, Transport::paper, set, 32.0);
         for (std::uint32_t ex = 0; ex < STOKES_WAVELENGTHS; ++ex) {
-            CHECK(value(layout.excitation_row(f), ex) == Approx(dye.excitation.at(set[ex])).epsilon(1e-6));
-            CHECK(std::memcmp(&pass.rows[layout.reradiation_row(f) + ex], &expected[ex], sizeof(Flux16)) == 0);
+            CHECK(value(excitation, ex) == Approx(dye.excitation.at(set[ex])).epsilon(1e-6));
+            CHECK(std::memcmp(&pass.rows[excitation + 1 + ex], &expected[ex], sizeof(Flux16)) == 0);
         }
     }
+}
+
+// Kernels take c times the rows: of 0.1 and 0.3 the rows are a quarter of the first dye's and three of the second's.
+TEST_CASE("the rows of several fluorophores are sums of each one's by its share", "[pass_spectra]") {
+    Scene scene = spectral_scene();
+    Fluorophore other = scene.fluorophores.front();
+    other.excitation = ramp(0.2, 0.7);
+    other.emission = ramp(0.4, 0.3);
+    scene.fluorophores.push_back(other);
+    scene.materials = {{"both", TranslucentMaterial{std::nullopt, {{0, 0.1}, {1, 0.3}}, false}},
+                       {"first", TranslucentMaterial{std::nullopt, {{0, 0.1}}, false}},
+                       {"second", TranslucentMaterial{std::nullopt, {{1, 0.3}}, false}}};
+    for (const Transport transport : {Transport::paper, Transport::conserving}) {
+        scene.render.transport = transport;
+        const SpectraLayout layout(scene);
+        const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), spread, 1, 100);
+        for (std::uint32_t row = 0; row < 17; ++row)
+            for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
+                const auto of = [&](std::size_t m) {
+                    return static_cast<double>(pass.rows[layout.excitation_row[m] + row].v[k]);
+                };
+                CHECK(of(0) == Approx(0.25 * of(1) + 0.75 * of(2)).epsilon(1e-6));
+            }
+        const std::vector<MaterialRecord> records = material_records(scene, transport);
+        CHECK(records[0].fluorescent_fraction == 0.4f);
+        CHECK(
+            (records[0].flags == STOKES_MATERIAL_FLUORESCENT && records[0].excitation_row == layout.excitation_row[0]));
+    }
+    CHECK(dye_weights({{0, 0.3}}) == std::vector<double>{1.0});
+    CHECK(dye_weights({{0, 0.0}, {1, 0.0}}) == std::vector<double>{0.5, 0.5});
 }
 
 // Photons come out as the quantum yield says, for each excitation wavelength: the mean over many sets of the row's sum
@@ -148,8 +181,8 @@ TEST_CASE("the last rows are the extinction coefficient and the albedo of the me
     scene.media = {Medium{}, medium};
     scene.media[0].sigma_s = scene.media[0].sigma_a = Spectrum::constant(1.0);
     const SpectraLayout layout(scene);
-    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 1, 100);
-    REQUIRE(layout.sigma_row(1) + 2 == layout.row_count());
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), spread, 1, 100);
+    REQUIRE(layout.sigma_row(1) + 2 == layout.row_count);
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
         const double s = medium.sigma_s.at(static_cast<double>(pass.constants.lambda_nm[k]));
         CHECK(static_cast<double>(pass.rows[layout.sigma_row(1)].v[k]) == Approx(s + 0.5).epsilon(1e-6));
@@ -160,7 +193,7 @@ TEST_CASE("the last rows are the extinction coefficient and the albedo of the me
 
 TEST_CASE("the constants of a pass are its own", "[pass_spectra]") {
     const Scene scene = spectral_scene();
-    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), area_mm2, 3, 12345);
+    const PassSpectra pass = make_pass_spectra(scene, light_probabilities(scene), spread, 3, 12345);
     const WavelengthSet set = draw_wavelengths(5, 3, 300, 780);
     for (std::size_t k = 0; k < set.size(); ++k) CHECK(pass.constants.lambda_nm[k] == static_cast<float>(set[k]));
     CHECK(pass.constants.seed == 5);
@@ -170,7 +203,6 @@ TEST_CASE("the constants of a pass are its own", "[pass_spectra]") {
     CHECK(pass.constants.chain[1] == Approx(479.0 / 14.0 / 32.0));
     CHECK(pass.constants.chain[14] == Approx(466.0 / 1.0 / 32.0));
     CHECK(pass.constants.chain[15] == 0.0f);  // no sixteenth wavelength after the first
-    CHECK(pass.constants.transport == STOKES_TRANSPORT_PAPER);
 }
 
 // xyz_of() sums over every nanometre of 300..830; light beyond 780 nm is not rendered, so the spectrum ends
@@ -181,7 +213,7 @@ TEST_CASE("the tristimulus weights of many passes give the colour of a spectrum"
     const std::vector<double> p = light_probabilities(scene);
     std::array<Sample, 3> xyz;
     for (std::uint32_t pass = 0; pass < 20000; ++pass) {
-        const PassConstants c = make_pass_spectra(scene, p, area_mm2, pass, 1).constants;
+        const PassConstants c = make_pass_spectra(scene, p, spread, pass, 1).constants;
         std::array<double, 3> sum{};
         for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
             const double per_mm2 = 1e-6 * radiance.at(c.lambda_nm[k]);

@@ -16,8 +16,8 @@ const std::string prisms = source_path("scenes/prisms.json");
 const std::string components[] = {"specular", "single", "multiple", "fluorescence", "total"};
 
 // Excitation and emission of a dye, each in a file of its own.
-struct Dye {
-    explicit Dye(const TemporaryFolder& folder) {
+struct DyeFiles {
+    explicit DyeFiles(const TemporaryFolder& folder) {
         put_file(folder.file("e.csv"), "# excitation\nwavelength_nm,E\n300,1\n450,0.8\n520,0\n");
         put_file(folder.file("f.csv"), "wavelength_nm,none,F\n400,0,0\n450,0,1\n520,0,0\n");
         flags = " --fraction 0.5 --excitation " + folder.file("e.csv") + " --emission " + folder.file("f.csv") + ":F ";
@@ -31,7 +31,7 @@ nlohmann::json json_of(const std::string& path) { return nlohmann::json::parse(f
 
 TEST_CASE("probe prints and writes what a material given by flags sends back", "[probe_command]") {
     const TemporaryFolder folder;
-    const Dye dye(folder);
+    const DyeFiles dye(folder);
     const std::string path = folder.file("probe.json");
     const Outcome run =
         run_stokes("probe --sigma-s 1.2 --sigma-a 0.1 --eta 1.5 --fresnel --quantum-yield 0.7" + dye.flags + few +
@@ -128,7 +128,7 @@ TEST_CASE("probe measures the same by flags and by scene", "[probe_command]") {
 
 TEST_CASE("probe writes the effective re-radiation matrix", "[probe_command]") {
     const TemporaryFolder folder;
-    const Dye dye(folder);
+    const DyeFiles dye(folder);
     const std::string path = folder.file("matrix.csv");
     const Outcome run = run_stokes("probe --sigma-s 1 --sigma-a 0.1" + dye.flags + few +
                                    "--step 20 --lambda-min 340 --lambda-max 560 --matrix " + path);
@@ -160,7 +160,7 @@ TEST_CASE("probe writes the effective re-radiation matrix", "[probe_command]") {
 
 TEST_CASE("probe gives the same bits whatever the number of threads", "[probe_command]") {
     const TemporaryFolder folder;
-    const Dye dye(folder);
+    const DyeFiles dye(folder);
     std::string first;
     for (const char* threads : {"1", "2"}) {
         const std::string path = folder.file(threads);
@@ -174,7 +174,7 @@ TEST_CASE("probe gives the same bits whatever the number of threads", "[probe_co
 
 TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
     const TemporaryFolder folder;
-    const Dye dye(folder);
+    const DyeFiles dye(folder);
     const std::string medium = "--sigma-s 1 --sigma-a 0 ";
     put_file(folder.file("bad.csv"), "wavelength_nm,a\n300,1\n400,-2\n");
     put_file(folder.file("high.csv"), "wavelength_nm,a\n300,1\n400,1.5\n");

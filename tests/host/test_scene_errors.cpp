@@ -224,6 +224,22 @@ TEST_CASE("Bad scenes: media, fluorophores and materials") {
         {"\"medium\": \"stone\"", "\"fresnel\": true",
          ":11: materials.glow: missing key \"medium\", which subsurface light needs"},
         {"\"dye\", \"fl", "\"ink\", \"fl", ":11: materials.glow.fluorophore: no \"ink\" in fluorophores"},
+        {"\"fluorescent_fraction\": 0.5",
+         "\"fluorescent_fraction\": 0.5, \"fluorophores\": [{\"fluorophore\": \"dye\", \"fraction\": 0.5}]",
+         ":11: materials.glow.fluorophores: expected either this or \"fluorophore\" and \"fluorescent_fraction\", "
+         "got both"},
+        {"\"fluorophore\": \"dye\", \"fluorescent_fraction\": 0.5", "\"fluorophores\": []",
+         ":11: materials.glow.fluorophores: expected one or more fluorophores"},
+        {"\"fluorophore\": \"dye\", \"fluorescent_fraction\": 0.5",
+         "\"fluorophores\": [{\"fluorophore\": \"dye\", \"fraction\": 0.5}, {\"fluorophore\": \"dye\", \"fraction\": "
+         "0.1}]",
+         ":11: materials.glow.fluorophores[1].fluorophore: \"dye\" given twice"},
+        {"\"fluorophore\": \"dye\", \"fluorescent_fraction\": 0.5",
+         "\"fluorophores\": [{\"fluorophore\": \"dye\", \"fraction\": 1.5}]",
+         ":11: materials.glow.fluorophores[0].fraction: expected a number in [0, 1], got 1.5"},
+        {"\"fluorophore\": \"dye\", \"fluorescent_fraction\": 0.5",
+         "\"fluorophores\": [{\"fluorophore\": \"dye\", \"share\": 0.5}]",
+         ":11: materials.glow.fluorophores[0]: unknown key \"share\""},
         {"\"glow\": {", "\"../glow\": {", ":11: materials: expected a name of 1 to 64 letters"},
     });
 }

@@ -81,12 +81,14 @@ TEST_CASE("A scene's settings, media and materials arrive as written") {
     CHECK(scene.fluorophores[0].excitation.at(350) == Approx(0.5));
     CHECK(scene.fluorophores[0].excitation.at(299) == 0.0);
     REQUIRE(scene.materials.size() == 3);
-    CHECK(scene.materials[0].kind == MaterialKind::diffuse);
-    CHECK(scene.materials[0].reflectance.at(450) == Approx(0.4));
-    CHECK(scene.materials[0].reflectance.at(700) == 0.6);
-    CHECK(scene.materials[1].kind == MaterialKind::translucent);
-    CHECK((scene.materials[1].medium == 0 && scene.materials[1].fluorophore == 0 && scene.materials[1].subsurface));
-    CHECK(scene.materials[2].kind == MaterialKind::black);
+    const auto& diffuse = std::get<DiffuseMaterial>(scene.materials[0].kind);
+    CHECK(diffuse.reflectance.at(450) == Approx(0.4));
+    CHECK(diffuse.reflectance.at(700) == 0.6);
+    const auto& translucent = std::get<TranslucentMaterial>(scene.materials[1].kind);
+    CHECK(translucent.medium == 0);
+    REQUIRE(translucent.dyes.size() == 1);
+    CHECK((translucent.dyes[0].fluorophore == 0 && translucent.dyes[0].fraction == 0.5));
+    CHECK(std::holds_alternative<BlackMaterial>(scene.materials[2].kind));
 }
 
 TEST_CASE("A scene names its transport, or gets the one that conserves energy") {
@@ -154,11 +156,14 @@ TEST_CASE("Emission, direct light and radii are as the scene says, or by its sam
 }
 
 TEST_CASE("A surface reflects where the scene says so") {
-    CHECK_FALSE(parse_scene(base, "s.json").materials[1].fresnel);
-    const std::string medium = "\"medium\": \"stone\"";
-    CHECK(scene_with(medium, medium + ", \"fresnel\": true").materials[1].fresnel);
-    CHECK_FALSE(scene_with(medium, medium + ", \"fresnel\": false").materials[1].fresnel);
-    CHECK_FALSE(scene_with(medium, medium + ", \"fresnel\": false, \"subsurface\": false").materials[1].fresnel);
+    const auto reflects = [](const std::string& more) {
+        const std::string medium = "\"medium\": \"stone\"";
+        return as_translucent(scene_with(medium, medium + more).materials[1])->fresnel;
+    };
+    CHECK_FALSE(reflects(""));
+    CHECK(reflects(", \"fresnel\": true"));
+    CHECK_FALSE(reflects(", \"fresnel\": false"));
+    CHECK_FALSE(reflects(", \"fresnel\": false, \"subsurface\": false"));
 }
 
 TEST_CASE("A quantum yield is given, or follows from the conversion and the emission, and is 1 at most") {
@@ -203,7 +208,7 @@ TEST_CASE("Shapes and emitters share one list, each emitter with its surface") {
     REQUIRE(scene.lights.size() == 1);
     CHECK(scene.shapes[0].name == "shape 0");
     CHECK((scene.shapes[0].material == 1 && scene.shapes[0].light == -1 && scene.shapes[0].body == 0));
-    CHECK(scene.lights[0].shape == 1);
+    CHECK(std::get<SurfaceLight>(scene.lights[0].kind).shape == 1);
     CHECK((scene.shapes[1].light == 0 && scene.shapes[1].material == 2 && scene.shapes[1].body == 1));
     CHECK(scene.shapes[1].name == scene.lights[0].name);
     CHECK(scene.body_count == 2);
@@ -278,21 +283,19 @@ TEST_CASE("Beams carry irradiance times their cross-section") {
         R"({"type": "disk", "center_mm": [0, 100, 0], "normal": [0, -1, 0], "radius_mm": 10, "spectrum": "lamp", "power_W": 5})";
     const Scene disk = scene_with(light, R"({"name": "sun", "type": "beam", "section": "disk", "position_mm": [0, 9, 0],
         "direction": [0, -3, 0], "radius_mm": 20, "spectrum": "lamp", "irradiance_W_m2": 10})");
-    const Light& round = disk.lights[0];
-    CHECK((round.name == "sun" && round.kind == LightKind::beam && round.section == BeamSection::disk));
-    CHECK(round.shape == -1);
+    CHECK(disk.lights[0].name == "sun");
+    const auto& round = std::get<DiskBeam>(disk.lights[0].kind);
     CHECK(disk.shapes.size() == 1);
     CHECK(round.direction == glm::dvec3(0, -1, 0));
-    CHECK(round.flux.sum_1nm(300, 780) == Approx(10 * M_PI * 4e-4));
+    CHECK(disk.lights[0].flux.sum_1nm(300, 780) == Approx(10 * M_PI * 4e-4));
     CHECK(glm::length(round.half_u_mm) == Approx(20));
     CHECK(glm::length(round.half_v_mm) == Approx(20));
 
     const Scene rectangle =
         scene_with(light, R"({"type": "beam", "section": "rectangle", "position_mm": [0, 9, 0], "up": [1, 5, 0],
         "direction": [0, -3, 0], "width_mm": 20, "height_mm": 30, "spectrum": "lamp", "irradiance_W_m2": 10})");
-    const Light& flat = rectangle.lights[0];
-    CHECK(flat.section == BeamSection::rectangle);
-    CHECK(flat.flux.sum_1nm(300, 780) == Approx(10 * 6e-4));
+    const auto& flat = std::get<RectangleBeam>(rectangle.lights[0].kind);
+    CHECK(rectangle.lights[0].flux.sum_1nm(300, 780) == Approx(10 * 6e-4));
     CHECK(glm::length(flat.half_v_mm - glm::dvec3(15, 0, 0)) == Approx(0).margin(1e-9));
     CHECK(std::abs(flat.half_u_mm.z) == Approx(10));
     CHECK(glm::dot(flat.half_u_mm, flat.direction) == Approx(0).margin(1e-9));
@@ -303,7 +306,7 @@ TEST_CASE("Spectra come from files, illuminants, pairs and constants, with the e
     put_file(folder.file("t.csv"), "# header\nnm,a\n400,0.25\n500,0.5\n");
     const auto reflectance = [&](const std::string& spectrum) {
         const std::string text = with(R"({"pairs": [[400, 0.2], [500, 0.6]]})", spectrum);
-        return parse_scene(text, folder.file("s.json")).materials[0].reflectance;
+        return as_diffuse(parse_scene(text, folder.file("s.json")).materials[0])->reflectance;
     };
     CHECK(reflectance("0.3").at(555) == 0.3);
     CHECK(reflectance(R"({"constant": 0.3})").at(900) == 0.3);
@@ -324,9 +327,27 @@ TEST_CASE("Spectra come from files, illuminants, pairs and constants, with the e
 
 TEST_CASE("Surface fluorescence needs no medium") {
     const Scene scene = scene_with(R"("medium": "stone", "fluorophore")", R"("subsurface": false, "fluorophore")");
-    CHECK_FALSE(scene.materials[1].subsurface);
-    CHECK(scene.materials[1].medium == -1);
-    CHECK(scene.materials[1].fluorophore == 0);
+    CHECK_FALSE(medium_of(scene.materials[1]));
+    CHECK(as_translucent(scene.materials[1])->dyes.front().fluorophore == 0);
+}
+
+TEST_CASE("A material may hold several fluorophores") {
+    const std::string one = R"("fluorophore": "dye", "fluorescent_fraction": 0.5)";
+    const auto dyes = [&](const std::string& text) {
+        std::string scene = base;
+        scene.replace(scene.find("\"fluorophores\": {"), 17,
+                      R"("fluorophores": {"ink": {"excitation": 1, "emission": 1}, )");
+        return as_translucent(parse_scene(scene.replace(scene.find(one), one.size(), text), "s.json").materials[1])
+            ->dyes;
+    };
+    const std::vector<Dye> both =
+        dyes(R"("fluorophores": [{"fluorophore": "dye", "fraction": 0.3}, {"fluorophore": "ink", "fraction": 0.7}])");
+    REQUIRE(both.size() == 2);
+    CHECK((both[0].fluorophore == 1 && both[0].fraction == 0.3));
+    CHECK((both[1].fluorophore == 0 && both[1].fraction == 0.7));
+    CHECK_THROWS_WITH(
+        dyes(R"("fluorophores": [{"fluorophore": "dye", "fraction": 0.3}, {"fluorophore": "ink", "fraction": 0.8}])"),
+        Catch::Contains("materials.glow.fluorophores: expected fractions that add up to 1 at most, got 1.1"));
 }
 
 TEST_CASE("An emitter may have a material of its own") {
@@ -349,10 +370,10 @@ TEST_CASE("The exhibit: three dyes in two rows, each object standing on its pris
         for (const auto& [prism_name, object_name] : pairs) {
             INFO(row << prism_name);
             const Shape& prism = find(row + prism_name);
-            const Material& material = scene.materials[static_cast<std::size_t>(prism.material)];
-            CHECK(material.kind == MaterialKind::translucent);
-            CHECK(material.subsurface == (row == "front "));
-            CHECK(material.fluorescent_fraction == (row == "front " ? 0.5 : 1.0));
+            const auto& material =
+                std::get<TranslucentMaterial>(scene.materials[static_cast<std::size_t>(prism.material)].kind);
+            CHECK(material.medium.has_value() == (row == "front "));
+            CHECK(fluorescent_fraction(material.dyes) == (row == "front " ? 0.5 : 1.0));
             const Bounds below = mesh_bounds(prism.mesh);
             const Bounds above = mesh_bounds(find(row + object_name).mesh);
             CHECK(above.low_mm.y == Approx(below.high_mm.y).margin(0.01));

@@ -43,13 +43,13 @@ struct Folder : TemporaryFolder {
 TEST_CASE("A texture is read with its two spectra; transparent parts are as on white paper") {
     const Folder folder;
     const Scene scene = folder.scene(good, rectangle);
-    const Material& wall = scene.materials[1];
+    const auto& wall = std::get<DiffuseMaterial>(scene.materials[1].kind);
     REQUIRE(wall.texture);
     CHECK(wall.reflectance.at(500) == 0.1);
     CHECK(wall.white.at(350) == Approx(0.75));
     CHECK(wall.texture->luminance == std::vector<float>{1.0f, 1.0f});
     CHECK(wall.texture->opacity.empty());
-    CHECK_FALSE(scene.materials[0].texture);
+    CHECK(texture_of(scene.materials[0]) == nullptr);
     CHECK(scene.shapes[0].mesh.uv.empty());
     CHECK(scene.shapes[1].mesh.uv.size() == 2);
 }

@@ -53,16 +53,11 @@ std::vector<Fluorophore> shipped_fluorophores() {
 
 Scene lit(const Spectrum& lamp, const std::vector<Fluorophore>& fluorophores) {
     Scene scene;
-    Light light;
-    light.flux = lamp;
-    scene.lights = {light};
+    scene.lights = {{"lamp", lamp, SurfaceLight{}}};
     scene.fluorophores = fluorophores;
     for (std::size_t i = 0; i < fluorophores.size(); ++i) {
-        Material material;
-        material.kind = MaterialKind::translucent;
-        material.fluorophore = static_cast<int>(i);
-        material.fluorescent_fraction = 0.5;
-        scene.materials.push_back(material);
+        const Dye dye{static_cast<int>(i), 0.5};
+        scene.materials.push_back({fluorophores[i].name, TranslucentMaterial{std::nullopt, {dye}, false}});
     }
     return scene;
 }
@@ -186,10 +181,9 @@ TEST_CASE("wavelengths are drawn uniformly where that is asked for", "[wavelengt
 }
 
 TEST_CASE("the spectra of a pass have the weights of its wavelengths", "[wavelength_importance]") {
-    Scene scene = lit(shipped_lamps()[0].second, shipped_fluorophores());
-    scene.lights[0].kind = LightKind::surface;
+    const Scene scene = lit(shipped_lamps()[0].second, shipped_fluorophores());
     const PassWavelengths w = stratified_wavelengths(scene)->draw(1, 2);
-    const PassSpectra pass = make_pass_spectra(scene, {1.0}, {25.0}, w, 2, 1000);
+    const PassSpectra pass = make_pass_spectra(scene, {1.0}, {M_PI * 25.0}, w, 2, 1000);
     const SpectraLayout layout(scene);
     CHECK(pass.constants.stratified == 1);
     for (std::size_t l = 0; l < level_shares.size(); ++l)
@@ -203,7 +197,7 @@ TEST_CASE("the spectra of a pass have the weights of its wavelengths", "[wavelen
         CHECK(static_cast<double>(pass.constants.to_y[k]) ==
               Approx(683.002e6 * 481.0 / 16.0 * cie1931().y.at(w.set[k])).epsilon(1e-6));
         for (std::size_t em = 0; em < 16; ++em)
-            CHECK(static_cast<double>(pass.rows[layout.reradiation_row(0) + k].v[em]) ==
+            CHECK(static_cast<double>(pass.rows[layout.excitation_row[0] + 1 + k].v[em]) ==
                   Approx(static_cast<double>(even[k].v[em]) * w.weight_nm(k, em)).epsilon(1e-6));
     }
 }

@@ -49,8 +49,10 @@ inline Scene reference_scene(const ReferenceSetting& setting, std::uint32_t seed
     Scene scene = read_scene(source_path("scenes/" + setting.scene_file));
     for (Light& light : scene.lights) {
         light.flux = Spectrum::constant(1.0);
-        light.half_u_mm *= 0.5;
-        light.half_v_mm *= 0.5;
+        if (DiskBeam* beam = std::get_if<DiskBeam>(&light.kind)) {
+            beam->half_u_mm *= 0.5;
+            beam->half_v_mm *= 0.5;
+        }
     }
     scene.film = {reference_columns * block_edge, reference_rows * block_edge, {}};
     scene.render.lambda_min_nm = setting.lambda_min_nm;

@@ -161,13 +161,14 @@ TEST_CASE("the prisms glow in the colours of their quantum dots", "[hue]") {
         const Material& material = scene.materials[static_cast<std::size_t>(scene.shapes[s].material)];
         const std::vector<std::size_t> pixels = inside(points, scene, static_cast<int>(s));
         CAPTURE(scene.shapes[s].name, pixels.size());
-        if (material.kind == MaterialKind::translucent) {
+        if (const TranslucentMaterial* translucent = as_translucent(material)) {
             REQUIRE(pixels.size() >= 10);
             const glm::dvec2 seen = chromaticity(mean_of(image, Component::fluorescence, pixels));
             std::map<double, std::string> by_distance;
             for (const Fluorophore& dots : scene.fluorophores)
                 by_distance[glm::length(seen - chromaticity(xyz_of(dots.emission)))] = dots.name;
-            const Fluorophore& own = scene.fluorophores[static_cast<std::size_t>(material.fluorophore)];
+            const Fluorophore& own =
+                scene.fluorophores[static_cast<std::size_t>(translucent->dyes.front().fluorophore)];
             const glm::dvec2 expected = glow_chromaticity(scene, own), emission = chromaticity(xyz_of(own.emission));
             CAPTURE(seen.x, seen.y, expected.x, expected.y, emission.x, emission.y, dominant_wavelength(seen),
                     dominant_wavelength(emission));
@@ -197,7 +198,7 @@ TEST_CASE("white things are violet in the lamp's light and tinted by the prism b
         if (scene.materials[static_cast<std::size_t>(scene.shapes[s].material)].name != "white") continue;
         std::vector<std::size_t> lit;
         for (const std::size_t i : inside(points, scene, static_cast<int>(s)))
-            if (glm::dot(points[i].normal, -scene.lights[0].direction) > 0.6) lit.push_back(i);
+            if (glm::dot(points[i].normal, -std::get<DiskBeam>(scene.lights[0].kind).direction) > 0.6) lit.push_back(i);
         CAPTURE(name, lit.size());
         REQUIRE(lit.size() >= 3);
         const bool sphere = name.find("sphere") != std::string::npos;

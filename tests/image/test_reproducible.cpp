@@ -38,6 +38,20 @@ TEST_CASE("a picture has the same bits for any work-group size", "[reproducible]
     CHECK(sum > 0.0);
 }
 
+// Halves of the fraction have weights of one half, which add up without rounding.
+TEST_CASE("two equal fluorophores with half of the fraction each make the same picture as one", "[reproducible]") {
+    for (const Transport transport : {Transport::paper, Transport::conserving, Transport::walk}) {
+        CAPTURE(static_cast<int>(transport));
+        Scene scene = small_scene(transport);
+        scene.render.emission = Emission::random;  // aimed photons follow what each fluorophore counts for
+        const FilmImage one = rendered(scene, 64, {0});
+        scene.fluorophores.push_back(scene.fluorophores[0]);
+        translucent_of(scene, 1).dyes = {{0, 0.25}, {1, 0.25}};
+        const FilmImage two = rendered(scene, 64, {0});
+        for (std::size_t c = 0; c < component_count; ++c) CHECK(same_bits(one.xyz[c], two.xyz[c]));
+    }
+}
+
 TEST_CASE("a picture with local radii has the same bits for any work-group size, and others than with one radius",
           "[reproducible]") {
     Scene scene = small_scene();

@@ -18,14 +18,17 @@ namespace {
 constexpr std::uint32_t seed = 77;
 
 MaterialRecord translucent(float c, bool subsurface, bool fluorescent) {
-    return {STOKES_TRANSLUCENT,
-            subsurface ? 0u : STOKES_NONE,
-            c,
-            1.5f,
-            fluorescent ? 8u : STOKES_NONE,
-            fluorescent ? 9u : STOKES_NONE,
-            0,
-            0};
+    MaterialRecord record = translucent_record(
+        (subsurface ? STOKES_MATERIAL_SUBSURFACE : 0u) | (fluorescent ? STOKES_MATERIAL_FLUORESCENT : 0u), c, 1.5f);
+    record.excitation_row = 8;
+    record.reradiation_row = 9;
+    return record;
+}
+
+MaterialRecord of_kind(std::uint32_t kind) {
+    MaterialRecord record = translucent(1.0f, true, true);
+    record.kind = kind;
+    return record;
 }
 
 // The pass's spectra as far as they are read: row 8 is the fluorophore's excitation.
@@ -35,16 +38,11 @@ std::vector<Flux16> spectra() {
     return rows;
 }
 
-// Black, diffuse, and translucent of every sort.
+// Black, diffuse, translucent of every sort, and of a kind that nobody knows.
 std::vector<MaterialRecord> materials() {
-    return {{STOKES_BLACK, STOKES_NONE, 0.0f, 1.0f, STOKES_NONE, STOKES_NONE, 0, 0},
-            {STOKES_DIFFUSE, STOKES_NONE, 0.0f, 1.0f, STOKES_NONE, STOKES_NONE, 0, 0},
-            translucent(0.0f, true, true),
-            translucent(0.3f, true, true),
-            translucent(1.0f, true, true),
-            translucent(0.3f, false, true),
-            translucent(1.0f, false, true),
-            translucent(0.3f, true, false)};
+    return {of_kind(STOKES_BLACK),          of_kind(STOKES_DIFFUSE),        translucent(0.0f, true, true),
+            translucent(0.3f, true, true),  translucent(1.0f, true, true),  translucent(0.3f, false, true),
+            translucent(1.0f, false, true), translucent(0.3f, true, false), of_kind(77)};
 }
 
 // What arrives, and what it may arrive at.
@@ -155,12 +153,12 @@ std::vector<float> branch_draws(std::uint32_t paths) {
 
 std::uint32_t expected_event(const MaterialRecord& m, float draw, bool branches) {
     if (m.kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
-    if (m.kind == STOKES_BLACK) return STOKES_EVENT_NONE;
-    if (branches && m.medium != STOKES_NONE && m.reradiation_row != STOKES_NONE && m.fluorescent_fraction > 0.0f)
-        return STOKES_EVENT_BRANCHES;
-    const bool meets_fluorophore = draw < m.fluorescent_fraction;
-    if (meets_fluorophore) return m.reradiation_row == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_FLUORESCENCE;
-    return m.medium == STOKES_NONE ? STOKES_EVENT_NONE : STOKES_EVENT_ELASTIC;
+    if (m.kind != STOKES_TRANSLUCENT) return STOKES_EVENT_NONE;
+    const bool subsurface = (m.flags & STOKES_MATERIAL_SUBSURFACE) != 0;
+    const bool fluorescent = (m.flags & STOKES_MATERIAL_FLUORESCENT) != 0;
+    if (branches && subsurface && fluorescent && m.fluorescent_fraction > 0.0f) return STOKES_EVENT_BRANCHES;
+    if (draw < m.fluorescent_fraction) return fluorescent ? STOKES_EVENT_FLUORESCENCE : STOKES_EVENT_NONE;
+    return subsurface ? STOKES_EVENT_ELASTIC : STOKES_EVENT_NONE;
 }
 
 void check_arrival(const Arrivals& a, const Classified& result, std::size_t entry, const std::vector<float>& draws,

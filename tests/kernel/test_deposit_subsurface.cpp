@@ -26,12 +26,14 @@ std::vector<Flux16> conserving_spectra() {
     return rows;
 }
 
-std::vector<MaterialRecord> conserving_materials(float exit_scale) {
+std::vector<MaterialRecord> conserving_materials(bool fresnel) {
     std::vector<MaterialRecord> materials = translucent_materials();
     const auto sigma_row = static_cast<std::uint32_t>(translucent_spectra().size());
     for (MaterialRecord& m : materials) {
-        m.sigma_row = m.medium == STOKES_NONE ? STOKES_NONE : sigma_row;
-        m.exit_scale = m.medium == STOKES_NONE || m.eta == 1.0f ? 0.0f : exit_scale;
+        m.sigma_row = sigma_row;
+        if (!fresnel || !has(m, STOKES_MATERIAL_SUBSURFACE) || m.eta == 1.0f) continue;
+        m.flags |= STOKES_MATERIAL_FRESNEL;
+        m.exit_scale = 1.1f;
     }
     return materials;
 }
@@ -99,8 +101,8 @@ void check_exit(const SubsurfaceArrivals& a, const Exits& e, std::size_t i, std:
     CHECK(exit_point.material == p.material);
     CHECK((exit_point.x == p.x && exit_point.y == p.y && exit_point.z == p.z));
     CHECK((exit_point.nx == p.nx && exit_point.ny == p.ny && exit_point.nz == p.nz));
-    if (material.medium == STOKES_NONE) {
-        CHECK(exit_point.r_mm == 0.0f);
+    if (!has(material, STOKES_MATERIAL_SUBSURFACE)) {
+        CHECK((exit_point.r_mm == 0.0f && exit_point.found == 1u));
         CHECK(probe.body == STOKES_NONE);
         CHECK(probe.reach_mm < 0.0f);
         return;
@@ -141,10 +143,21 @@ std::vector<ExitPoint> given_exits(const SubsurfaceArrivals& a, const std::vecto
         const SurfacePoint& p = a.points[list[i]];
         const bool subsurface = p.material != 2;
         const float r = subsurface ? 10.0f * float(component) + 2.5f * uniform(generator) : 0.0f;
-        exits[before + i] = {p.x + 1, p.y,        p.z,  subsurface && i % 5 == 4 ? -std::max(r, FLT_MIN) : r,
-                             p.nx,    p.ny,       p.nz, subsurface ? 90.0f * uniform(generator) : 0.0f,
-                             list[i], p.material, 0,    1,
-                             {0, 0},  {0, 0}};
+        exits[before + i] = {p.x + 1,
+                             p.y,
+                             p.z,
+                             r,
+                             p.nx,
+                             p.ny,
+                             p.nz,
+                             subsurface ? 90.0f * uniform(generator) : 0.0f,
+                             list[i],
+                             p.material,
+                             0,
+                             1,
+                             {0, 0},
+                             {0, 0},
+                             subsurface && i % 5 == 4 ? 0u : 1u};
     }
     return exits;
 }
@@ -215,9 +228,8 @@ Leaving leaving_twin(const ExitPoint& exit_point, const Flux16& incident, std::u
         for (std::size_t k = 0; k < 16; ++k) result.flux[k] = double(incident.v[k]);
     }
     for (const double f : result.flux) result.converted += f;
-    if (material.medium != STOKES_NONE) {
-        const auto power =
-            tables.look_up(material.medium, component, std::abs(double(exit_point.r_mm)), double(exit_point.row));
+    if (has(material, STOKES_MATERIAL_SUBSURFACE)) {
+        const auto power = tables.look_up(material.medium, component, double(exit_point.r_mm), double(exit_point.row));
         for (std::size_t k = 0; k < 16; ++k) result.flux[k] *= power[k];
     }
     for (const double f : result.flux) result.kept += f;
@@ -242,7 +254,7 @@ void check_deposits(const SubsurfaceArrivals& a, std::uint32_t component) {
         if (component == STOKES_MAP_FLUORESCENCE)
             CHECK(double(exit_point.event_light.energy) == Approx(expected.converted).epsilon(5e-6));
         CHECK((head.x == exit_point.x && head.y == exit_point.y && head.z == exit_point.z));
-        if (given[before + i].r_mm < 0.0f) {
+        if (given[before + i].found == 0) {
             CHECK(head.normal == STOKES_EMPTY_SLOT);
             CHECK(ledger.missed_exits == (expected.kept > 0.0 ? 1u : 0u));
             CHECK(ledger.stored.energy == 0.0f);
@@ -306,9 +318,9 @@ TEST_CASE("azimuths are uniform, and different for each component", "[deposit_su
 // as far from the collision as its row says, and its scale is half the range of cosines times the transmittance.
 TEST_CASE("conserving exits lie about the foot of the first collision", "[deposit_subsurface][tiny]") {
     const SubsurfaceArrivals a(120);
-    for (const float exit_scale : {0.0f, 1.1f})
+    for (const bool reflecting : {false, true})
         for (const std::uint32_t sampler : {STOKES_SAMPLER_DIRECT, STOKES_SAMPLER_SCATTERED}) {
-            const std::vector<MaterialRecord> materials = conserving_materials(exit_scale);
+            const std::vector<MaterialRecord> materials = conserving_materials(reflecting);
             EventRound round = round_of(STOKES_MAP_MULTIPLE, a.elastic.size());
             round.sampler = sampler;
             const Exits e = sample(a, a.elastic, round, materials);
@@ -326,7 +338,7 @@ TEST_CASE("conserving exits lie about the foot of the first collision", "[deposi
                 const glm::dvec3 foot = entry + (d + cos_in * n) / eta * way;
                 const glm::dvec3 at(probe.x, probe.y, probe.z);
                 const double r = double(exit_point.r_mm), row = double(exit_point.row);
-                CAPTURE(sampler, exit_scale, path, r, way, depth);
+                CAPTURE(sampler, reflecting, path, r, way, depth);
                 const double tolerance = 1e-4 * (1.0 + way + r);
                 CHECK(way > 0.0);
                 CHECK(std::abs(glm::dot(at - entry, n)) < tolerance);
@@ -344,7 +356,7 @@ TEST_CASE("conserving exits lie about the foot of the first collision", "[deposi
                 }
                 ++open;
                 CHECK(row * row == Approx(r * r + depth * depth).epsilon(1e-3).margin(tolerance));
-                const bool fresnel = material.exit_scale > 0.0f;
+                const bool fresnel = has(material, STOKES_MATERIAL_FRESNEL);
                 const double critical = fresnel ? std::sqrt(1.0 - 1.0 / (eta * eta)) : 0.0, mu = depth / row;
                 CHECK(mu >= critical - 1e-4);
                 double transmitted = 1.0;
@@ -364,7 +376,7 @@ TEST_CASE("conserving exits lie about the foot of the first collision", "[deposi
 // golden ratio of a turn apart, and the first exit is the one of an event with one exit.
 TEST_CASE("several exits of an event are stratified", "[deposit_subsurface][tiny]") {
     const SubsurfaceArrivals a(120);
-    const std::vector<MaterialRecord> materials = conserving_materials(0.0f);
+    const std::vector<MaterialRecord> materials = conserving_materials(false);
     EventRound round = round_of(STOKES_MAP_SINGLE, a.elastic.size());
     round.sampler = STOKES_SAMPLER_DIRECT;
     const Exits one = sample(a, a.elastic, round, materials);
@@ -418,7 +430,7 @@ TEST_CASE("exits are put where their probe hit, others are marked and keep their
         probes[i] = {on_plane.x, on_plane.y, on_plane.z, 1.0f,
                      normal.x,   normal.y,   normal.z,   i % 4 == 3 ? STOKES_NONE : 1u};
         hits[i] = {0.1f, 0.25f, 0.5f, i % 4 == 2 ? STOKES_NONE : i % 2};
-        given[i] = {9, 9, 9, i == 2 ? 0.0f : 0.5f * float(i), 0, 0, 1, 30, i, 1, 0, 1, {0, 0}, {0, 0}};
+        given[i] = {9, 9, 9, 0.5f * float(i), 0, 0, 1, 30, i, 1, 0, 1, {0, 0}, {0, 0}, 1};
     }
     const Buffer<ExitPoint> buffer = on_device(given);
     Program(test_device(), "deposit_subsurface.cl")
@@ -433,16 +445,15 @@ TEST_CASE("exits are put where their probe hit, others are marked and keep their
     for (std::uint32_t i = 0; i < 80; ++i) {
         CAPTURE(i);
         const glm::dvec3 at(placed[i].x, placed[i].y, placed[i].z), n(placed[i].nx, placed[i].ny, placed[i].nz);
-        CHECK((placed[i].path == i && placed[i].row == 30.0f));
+        CHECK((placed[i].path == i && placed[i].row == 30.0f && placed[i].r_mm == given[i].r_mm));
         if (i >= 78 || i % 4 == 3) {  // beyond the count, or without a probe
-            CHECK((at == glm::dvec3(9) && placed[i].r_mm == given[i].r_mm));
+            CHECK((at == glm::dvec3(9) && placed[i].found == 1));
         } else if (i % 4 == 2) {
-            CHECK(placed[i].r_mm < 0.0f);
-            CHECK(placed[i].r_mm == Approx(-given[i].r_mm).margin(1e-30));
+            CHECK(placed[i].found == 0);
         } else {
             CHECK(glm::length(at - point_on(triangles[i % 2], 0.25, 0.5)) < 1e-6);
             CHECK(glm::length(n - normal_of(triangles[i % 2])) < 1e-6);
-            CHECK(placed[i].r_mm == given[i].r_mm);
+            CHECK(placed[i].found == 1);
         }
     }
 }
@@ -488,7 +499,7 @@ TEST_CASE("both branches of the paper's model are stored with their weights", "[
 TEST_CASE("conserving deposits are those of the first collision and its way out", "[deposit_subsurface][tiny]") {
     const std::uint32_t branches = GENERATE(0u, 1u);
     const SubsurfaceArrivals a(90);
-    const std::vector<MaterialRecord> materials = conserving_materials(0.0f);
+    const std::vector<MaterialRecord> materials = conserving_materials(false);
     const std::vector<Flux16> spectra = conserving_spectra();
     const Flux16 &sigma_t = spectra[spectra.size() - 2], &albedo = spectra.back();
     const MadeUpTables tables;
@@ -511,7 +522,7 @@ TEST_CASE("conserving deposits are those of the first collision and its way out"
                 const Flux16& incident = a.flux[list[i]];
                 std::array<double, 16> weight, uptake, taken_up{}, sent_on{};
                 double sum = 0.0, p = 0.0;
-                const bool below = material.medium != STOKES_NONE;
+                const bool below = has(material, STOKES_MATERIAL_SUBSURFACE);
                 for (std::size_t k = 0; k < 16; ++k) {
                     const double sigma = double(sigma_t.v[k]);
                     sum += weight[k] = below ? sigma * std::exp(-sigma * double(exit_point.way_mm)) : 1.0;
@@ -533,10 +544,10 @@ TEST_CASE("conserving deposits are those of the first collision and its way out"
                                            double(spectra[material.reradiation_row + ex].v[em]);
                         else if (ex == em)
                             sent_on[em] = taken_up[em] * double(albedo.v[em]);
-                const auto power = below && sampler == STOKES_SAMPLER_SCATTERED
-                                       ? tables.look_up(material.medium, component, std::abs(double(exit_point.r_mm)),
-                                                        double(exit_point.row))
-                                       : std::array<double, 16>{};
+                const auto power =
+                    below && sampler == STOKES_SAMPLER_SCATTERED
+                        ? tables.look_up(material.medium, component, double(exit_point.r_mm), double(exit_point.row))
+                        : std::array<double, 16>{};
                 double event = 0.0;
                 CAPTURE(fluorescent, sampler, i, p, exit_point.material);
                 for (std::size_t k = 0; k < 16; ++k) {

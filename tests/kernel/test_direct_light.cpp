@@ -187,6 +187,13 @@ TEST_CASE("a beam brings its irradiance times the cosine, within its section", "
     }
 }
 
+TEST_CASE("a light of a kind that nobody knows brings nothing", "[direct_light][tiny]") {
+    Bench bench;
+    bench.add_mesh(make_rectangle(100.0, 100.0));
+    bench.add_beam(77, {0.0, 10.0, 0.0}, {5.0, 0.0, 0.0}, {0.0, 0.0, 5.0}, 1.0);
+    CHECK(bench.light_at({point_at({0.0, 0.0, 0.0})}) == std::vector<double>{0.0});
+}
+
 // One plate, seen from above and from below as a sheet with two sides is, under a beam from above.
 TEST_CASE("beams light the side they fall on, until something is in their way", "[direct_light][tiny]") {
     const glm::dvec3 u(5.0, 0.0, 0.0), v(0.0, 0.0, 5.0);  // u x v looks down

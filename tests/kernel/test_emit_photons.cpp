@@ -36,6 +36,7 @@ std::vector<LightRecord> lights() {
         records[i] = LightRecord{};
         records[i].cumulative_probability = i == 4 ? 1.0f : static_cast<float>(cumulative);
         records[i].kind = STOKES_LIGHT_BEAM_DISK;
+        records[i].dimensions = 2;
         records[i].px = 1.0f, records[i].py = 2.0f, records[i].pz = 3.0f;
         records[i].dx = 0.6f, records[i].dz = -0.8f;
         records[i].ux = 1.6f, records[i].uz = 1.2f;  // length 2, at right angles to the direction
@@ -43,6 +44,7 @@ std::vector<LightRecord> lights() {
     }
     LightRecord& surface = records[surface_light];
     surface.kind = STOKES_LIGHT_SURFACE;
+    surface.dimensions = 4;
     surface.first_triangle = 1;
     surface.triangle_count = 3;
     surface.first_area = 2;
@@ -226,6 +228,27 @@ TEST_CASE("every photon starts as its light says", "[emit_photons][tiny]") {
     for (const std::size_t light : {dark_light, surface_light, disk_light, rectangle_light}) CHECK(seen[light] > 0);
 }
 
+TEST_CASE("a light of a kind that nobody knows emits nothing", "[emit_photons][tiny]") {
+    LightRecord light{};
+    light.kind = 77;
+    light.cumulative_probability = 1.0f;
+    const Buffer<PathLedger> ledgers(test_device(), "ledgers", 1);
+    Program(test_device(), "emit_photons.cl")
+        .kernel("emit_photons")
+        .launch(1, Arguments("pass", pass_on_device(1, 1, offset_mm))
+                       .add("light_count", 1u)
+                       .add("lights", on_device(std::vector<LightRecord>{light}))
+                       .add("light_areas", on_device(std::vector<float>{1.0f}))
+                       .add("triangles", on_device(triangles()))
+                       .add("photon_flux", on_device(std::vector<Flux16>{constant_flux(1.0f)}))
+                       .add("rays", on_device(std::vector<Ray>(1)))
+                       .add("flux", on_device(std::vector<Flux16>(1)))
+                       .add("ledgers", ledgers)
+                       .add("list", on_device(std::vector<std::uint32_t>(1))));
+    const PathLedger ledger = ledgers.download().front();
+    CHECK((ledger.emitted.energy == 0.0f && ledger.rays == 0 && ledger.fate == STOKES_FATE_ABSORBED));
+}
+
 // In all the cases below together seven chi-square tests, wrong once in 1000; the sums at 4 standard errors.
 const double level = sidak_level(1e-3, 7);
 
@@ -312,7 +335,7 @@ TEST_CASE("beams are parallel and fill their cross-section evenly", "[emit_photo
 
 namespace {
 
-const std::vector<EmittingLight> emitting = {{0.05, false}, {0.5, true}, {0.0, false}, {0.25, false}, {0.2, false}};
+const std::vector<EmittingLight> emitting = {{0.05, 2}, {0.5, 4}, {0.0, 2}, {0.25, 2}, {0.2, 2}};
 
 // Photons that bring most where the first coordinate is small, and of surfaces where the third is.
 EmissionCells aimed_cells(std::uint32_t photons) {

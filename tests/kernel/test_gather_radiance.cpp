@@ -12,7 +12,7 @@ using namespace stokes;
 namespace {
 
 // Materials of the tests, by index; reflectances are in the row of the same number.
-enum : std::uint32_t { black, grey, white, plain_translucent, surface_fluorescent, smooth_translucent };
+enum : std::uint32_t { black, grey, white, plain_translucent, surface_fluorescent, smooth_translucent, unknown };
 
 constexpr float exit_scale = 1.3f, smooth_eta = 2.0f;  // of smooth_translucent
 
@@ -109,25 +109,32 @@ class Bench {
             rays.push_back({from.x, from.y, from.z, 0.0f, d.x, d.y, d.z, INFINITY});
             hits.push_back({1.0f, 0.0f, 0.0f, s.missed ? STOKES_NONE : i});
         }
-        std::vector<MaterialRecord> materials(6);
-        for (MaterialRecord& m : materials) m.medium = STOKES_NONE;
+        std::vector<MaterialRecord> materials(7);
         materials[black].kind = STOKES_BLACK;
         materials[grey].kind = materials[white].kind = STOKES_DIFFUSE;
         materials[plain_translucent].kind = materials[surface_fluorescent].kind = STOKES_TRANSLUCENT;
-        materials[plain_translucent].medium = 0;
+        materials[plain_translucent].flags = STOKES_MATERIAL_SUBSURFACE;
         materials[smooth_translucent] = materials[plain_translucent];
+        materials[smooth_translucent].flags |= STOKES_MATERIAL_FRESNEL;
         materials[smooth_translucent].eta = smooth_eta;
         materials[smooth_translucent].exit_scale = exit_scale;
-        std::vector<Flux16> spectra(materials.size()), lights(1);
+        materials[unknown].kind = 77;
+        std::vector<Flux16> spectra(materials.size()), lights(2);
         for (int k = 0; k < 16; ++k) {
             for (std::uint32_t m = 0; m < spectra.size(); ++m) spectra[m].v[k] = reflectance(m, k);
-            lights[0].v[k] = emitted(k);
+            lights[0].v[k] = lights[1].v[k] = emitted(k);
         }
         const Device& device = test_device();
+        std::vector<LightRecord> records(2);
+        records[0].kind = STOKES_LIGHT_SURFACE;
+        records[1].kind = 77;
         common_ = Arguments("triangles", Buffer<Triangle>(device, "triangles", triangles))
                       .add("shapes", Buffer<ShapeRecord>(device, "shapes", shapes))
                       .add("materials", Buffer<MaterialRecord>(device, "materials", materials))
                       .add("spectra", Buffer<Flux16>(device, "spectra", spectra))
+                      .add("light_count", 2u)
+                      .add("lights", Buffer<LightRecord>(device, "lights", records))
+                      .add("light_areas", Buffer<float>(device, "areas", 1))
                       .add("light_radiance", Buffer<Flux16>(device, "emitted", lights))
                       .add("pass", pass_)
                       .add(no_textures(materials.size()).arguments());
@@ -464,6 +471,15 @@ TEST_CASE("smooth surfaces have the weight of their exit, and emit as much as ot
     CHECK(bench.x(STOKES_MAP_SURFACE, 1) == 0.0);
     CHECK(bench.x(STOKES_MAP_SURFACE, 2) == Approx(emission).epsilon(1e-5));
     CHECK(bench.x(STOKES_MAP_SURFACE, 3) == 0.0);
+}
+
+TEST_CASE("lights and materials of a kind that nobody knows are black", "[gather][tiny]") {
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    Bench bench({{{0.0, 0.0, 0.0}, up, unknown, 1}, {{0.0, 0.0, 0.0}, up, white, 0}}, {{{0.0, 0.0, 0.0}, up}}, 1.0f);
+    bench.run();
+    CHECK(bench.points()[0].maps == 0u);
+    CHECK(bench.x(STOKES_MAP_SURFACE, 0) == 0.0);
+    CHECK(bench.x(STOKES_MAP_SURFACE, 1) > 0.0);
 }
 
 // The bench's camera stands at the origin.

@@ -26,7 +26,7 @@ ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, const Flux16& ke
     return {p.x,
             p.y,
             p.z,
-            found ? 1.5f : -1.5f,
+            1.5f,
             n.x,
             n.y,
             n.z,
@@ -36,7 +36,8 @@ ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, const Flux16& ke
             0.7f,
             2.0f,
             light_of(kept),
-            light_of(event)};
+            light_of(event),
+            found ? 1u : 0u};
 }
 
 Flux16 times(const Flux16& flux, double factor) {
@@ -90,7 +91,11 @@ Retraced retrace(const Events& e, std::uint32_t component, std::uint32_t seed, s
     std::vector<Flux16> exit_flux = e.first_map;
     exit_flux.insert(exit_flux.end(), e.second_map.begin(), e.second_map.end());
     std::vector<MaterialRecord> materials = translucent_materials();
-    for (MaterialRecord& m : materials) m.exit_scale = exit_scale;
+    if (exit_scale > 0.0f)
+        for (MaterialRecord& m : materials) {
+            m.flags |= STOKES_MATERIAL_FRESNEL;
+            m.exit_scale = exit_scale;
+        }
     const Buffer<Ray> rays = on_device(std::vector<Ray>(count, Ray{}));
     const Buffer<Flux16> flux = on_device(e.flux);
     const Buffer<PathLedger> ledgers = on_device(e.ledgers);

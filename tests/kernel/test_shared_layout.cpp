@@ -59,18 +59,19 @@ using namespace stokes;
     S(LightRecord) F(LightRecord, kind) F(LightRecord, first_triangle) F(LightRecord, triangle_count) \
         F(LightRecord, cumulative_probability) F(LightRecord, px) F(LightRecord, py) F(LightRecord, pz) \
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
-        F(LightRecord, ball_mm) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, pad1) \
+        F(LightRecord, ball_mm) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, dimensions) \
         F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, pad2) \
     S(EmissionCell) F(EmissionCell, low) F(EmissionCell, size) F(EmissionCell, probability) F(EmissionCell, light) \
         F(EmissionCell, stride) F(EmissionCell, pad) \
     S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) \
-    S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, medium) \
+    S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, flags) F(MaterialRecord, transport) \
+        F(MaterialRecord, medium) \
         F(MaterialRecord, fluorescent_fraction) F(MaterialRecord, eta) F(MaterialRecord, excitation_row) \
         F(MaterialRecord, reradiation_row) F(MaterialRecord, sigma_row) F(MaterialRecord, exit_scale) \
     S(PassConstants) F(PassConstants, lambda_nm) F(PassConstants, to_x) F(PassConstants, to_y) \
         F(PassConstants, to_z) F(PassConstants, chain) \
         F(PassConstants, seed) F(PassConstants, pass) F(PassConstants, photons) \
-        F(PassConstants, offset_mm) F(PassConstants, transport) F(PassConstants, first_collision_only) \
+        F(PassConstants, offset_mm) F(PassConstants, first_collision_only) \
         F(PassConstants, stratified) F(PassConstants, low_discrepancy_pixels) F(PassConstants, strata) \
         F(PassConstants, level_shares) F(PassConstants, low_discrepancy_exits) F(PassConstants, pad1) \
     S(PathLedger) F(PathLedger, emitted) F(PathLedger, absorbed) F(PathLedger, stokes_loss) \
@@ -87,7 +88,7 @@ using namespace stokes;
     S(EventSample) F(EventSample, first) F(EventSample, second) \
     S(ExitPoint) F(ExitPoint, x) F(ExitPoint, y) F(ExitPoint, z) F(ExitPoint, r_mm) F(ExitPoint, nx) \
         F(ExitPoint, ny) F(ExitPoint, nz) F(ExitPoint, row) F(ExitPoint, path) F(ExitPoint, material) \
-        F(ExitPoint, way_mm) F(ExitPoint, scale) F(ExitPoint, kept) F(ExitPoint, event_light) \
+        F(ExitPoint, way_mm) F(ExitPoint, scale) F(ExitPoint, kept) F(ExitPoint, event_light) F(ExitPoint, found) \
     S(EventRound) F(EventRound, count) F(EventRound, event) F(EventRound, component) F(EventRound, sampler) \
         F(EventRound, first_exit) F(EventRound, first_slot) F(EventRound, slot_limit) \
         F(EventRound, second_exit) F(EventRound, last) F(EventRound, exits) F(EventRound, branches) \

@@ -49,24 +49,26 @@ class Bench {
             shapes.push_back({p.material, p.light});
         }
         std::vector<MaterialRecord> materials(4);
-        for (MaterialRecord& m : materials) {
-            m.medium = STOKES_NONE;
-            m.eta = eta;
-        }
+        for (MaterialRecord& m : materials) m.eta = eta;
         materials[grey].kind = STOKES_DIFFUSE;
         materials[glossy].kind = materials[clear].kind = STOKES_TRANSLUCENT;
-        materials[glossy].medium = materials[clear].medium = 0;
+        materials[glossy].flags = materials[clear].flags = STOKES_MATERIAL_SUBSURFACE | STOKES_MATERIAL_FRESNEL;
         materials[glossy].exit_scale = exit_scale;
         materials[clear].eta = 1.0f;
         materials[clear].exit_scale = 1.0f;
         Flux16 light{};
         light.v[0] = 3.0f;
+        std::vector<LightRecord> lights(1);
+        lights[0].kind = STOKES_LIGHT_SURFACE;
         const Device& device = test_device();
         rays_ = RayScene(device, triangles_);
         scene_ = rays_.arguments()
                      .add("triangles", Buffer<Triangle>(device, "triangles", triangles_))
                      .add("shapes", Buffer<ShapeRecord>(device, "shapes", shapes))
                      .add("materials", Buffer<MaterialRecord>(device, "materials", materials))
+                     .add("light_count", 1u)
+                     .add("lights", Buffer<LightRecord>(device, "lights", lights))
+                     .add("light_areas", Buffer<float>(device, "areas", 1))
                      .add("light_radiance", Buffer<Flux16>(device, "emitted", std::vector<Flux16>{light}))
                      .add(no_textures(materials.size()).arguments());
     }

@@ -26,11 +26,17 @@ constexpr std::uint32_t excitation_row = 0, reradiation_row = 1, absorbing_row =
 enum Kind : std::uint32_t { plain, reflecting, fluorescent, lossless, pale };
 
 std::vector<MaterialRecord> materials() {
-    return {{STOKES_TRANSLUCENT, 0, 0.0f, 1.4f, STOKES_NONE, STOKES_NONE, absorbing_row, 0.0f},
-            {STOKES_TRANSLUCENT, 0, 0.0f, 1.4f, STOKES_NONE, STOKES_NONE, absorbing_row, 1.1f},
-            {STOKES_TRANSLUCENT, 0, 0.7f, 1.4f, excitation_row, reradiation_row, absorbing_row, 1.1f},
-            {STOKES_TRANSLUCENT, 0, 0.0f, 1.0f, STOKES_NONE, STOKES_NONE, lossless_row, 0.0f},
-            {STOKES_TRANSLUCENT, 0, 0.0f, 1.4f, STOKES_NONE, STOKES_NONE, pale_row, 1.1f}};
+    const auto of = [](std::uint32_t flags, float c, float eta, std::uint32_t sigma_row) {
+        MaterialRecord record = translucent_record(STOKES_MATERIAL_SUBSURFACE | flags, c, eta);
+        record.excitation_row = excitation_row;
+        record.reradiation_row = reradiation_row;
+        record.sigma_row = sigma_row;
+        record.exit_scale = 1.1f;
+        return record;
+    };
+    return {of(0, 0.0f, 1.4f, absorbing_row), of(STOKES_MATERIAL_FRESNEL, 0.0f, 1.4f, absorbing_row),
+            of(STOKES_MATERIAL_FRESNEL | STOKES_MATERIAL_FLUORESCENT, 0.7f, 1.4f, absorbing_row),
+            of(0, 0.0f, 1.0f, lossless_row), of(STOKES_MATERIAL_FRESNEL, 0.0f, 1.4f, pale_row)};
 }
 
 std::vector<Flux16> spectra() {
@@ -122,7 +128,6 @@ Walked walk(const Entering& e, const Options& options = {}) {
     const Buffer<Flux16> flux = on_device(e.flux);
     const Buffer<PathLedger> ledgers = on_device(e.ledgers);
     PassConstants constants = pass_on_device(8, 0, offset_mm).download().front();
-    constants.transport = STOKES_TRANSPORT_WALK;
     constants.first_collision_only = options.first_collision_only ? 1 : 0;
     Program(test_device(), "walk_photons.cl", options.compiler)
         .kernel("walk_photons")

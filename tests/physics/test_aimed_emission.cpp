@@ -29,18 +29,15 @@ Scene world(Transport transport) {
     scene.render.radius_mm = 4.0;  // so that photons are few in a disk, and most of the noise is theirs
     scene.render.wavelengths = Wavelengths::importance;
     const double lamp = scene.lights[0].flux.sum_1nm(300, 780);
-    for (const BeamSection section : {BeamSection::disk, BeamSection::rectangle}) {
-        Light beam;
-        beam.kind = LightKind::beam;
-        beam.section = section;
-        const bool disk = section == BeamSection::disk;
+    for (const bool disk : {true, false}) {
+        Beam beam;
         beam.position_mm = disk ? glm::dvec3(-60.0, 100.0, 10.0) : glm::dvec3(0.0, 90.0, 5.0);
         beam.direction = glm::normalize(disk ? glm::dvec3(0.6, -1.0, 0.0) : glm::dvec3(0.0, -1.0, 0.1));
         const double size = disk ? 120.0 : 12.0;
         beam.half_u_mm = size * glm::normalize(glm::cross(beam.direction, glm::dvec3(0.0, 0.0, 1.0)));
         beam.half_v_mm = size * glm::normalize(glm::cross(beam.direction, beam.half_u_mm));
-        beam.flux = scene.lights[0].flux.scaled(disk ? 4.0 : 0.5);
-        scene.lights.push_back(beam);
+        scene.lights.push_back({"beam", scene.lights[0].flux.scaled(disk ? 4.0 : 0.5), DiskBeam{beam}});
+        if (!disk) scene.lights.back().kind = RectangleBeam{beam};
     }
     REQUIRE(lamp > 0.0);
     return scene;

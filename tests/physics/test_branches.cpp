@@ -54,7 +54,8 @@ Stored measured(Scene scene, Branches branches, int exits, std::uint32_t seed, b
     scene.render.exits = exits;
     scene.render.seed = seed;
     PhotonPasses passes(scene, photons);
-    if (even) passes.pass.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene, passes.on_device), photons));
+    if (even)
+        passes.pass.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene, passes.on_device), photons));
     PassWavelengths wavelengths = pass_wavelengths(RenderSettings{}, 0);
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) wavelengths.set[k] = 330 + 20 * static_cast<int>(k);
     Stored stored;
@@ -124,7 +125,7 @@ Scene uneven(Scene scene) {
 TEST_CASE("both branches and several exits store what the roulette does in the mean", "[branches]") {
     for (const bool fresnel : {false, true}) {
         Scene scene = uneven(slab_scene(0.4, 45.0, Transport::conserving));
-        scene.materials[0].fresnel = fresnel;
+        translucent_of(scene).fresnel = fresnel;
         CAPTURE(fresnel);
         const Stored roulette = measured(scene, Branches::roulette, 1, 1), both = measured(scene, Branches::both, 1, 2),
                      exits = measured(scene, Branches::both, 3, 3), alone = measured(scene, Branches::roulette, 3, 4);
@@ -140,7 +141,7 @@ TEST_CASE("light that enters again and again is the same by both branches", "[br
     for (const Transport transport : {Transport::conserving, Transport::paper}) {
         Scene scene = small_scene(transport);
         if (transport == Transport::conserving) scene = uneven(scene);
-        scene.materials[0].reflectance = Spectrum::constant(0.95);
+        scene.materials[0] = diffuse_material(0.95);
         CAPTURE(static_cast<int>(transport));
         const Stored roulette = measured(scene, Branches::roulette, 1, 5), both = measured(scene, Branches::both, 2, 6);
         check_same(roulette, both, 0.3);
@@ -152,7 +153,7 @@ TEST_CASE("light that enters again and again is the same by both branches", "[br
 TEST_CASE("the paper's light leaves as far from its entry however that is drawn", "[branches]") {
     for (const bool floor : {false, true}) {
         Scene scene = floor ? small_scene(Transport::paper) : uneven(slab_scene(0.4, 45.0, Transport::paper));
-        if (floor) scene.materials[0].reflectance = Spectrum::constant(0.95);
+        if (floor) scene.materials[0] = diffuse_material(0.95);
         CAPTURE(floor);
         scene.render.distances = Distances::table;
         const Stored table = measured(scene, Branches::both, 1, 7);

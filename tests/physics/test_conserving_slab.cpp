@@ -19,7 +19,8 @@ using MapFlux = std::array<std::array<double, STOKES_WAVELENGTHS>, 3>;
 MapFlux exact_flux(const Scene& scene, const WavelengthSet& set, double eta_of_surface, double mu, double entering) {
     const Medium& medium = scene.media[0];
     const Fluorophore& dot = scene.fluorophores[0];
-    const double c = scene.materials[0].fluorescent_fraction, sum = dot.emission.sum_1nm(300, 830);
+    const double c = fluorescent_fraction(as_translucent(scene.materials[0])->dyes),
+                 sum = dot.emission.sum_1nm(300, 830);
     const auto sigma_t = [&](int lambda) { return medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda); };
     MapFlux result{};
     for (std::size_t em = 0; em < set.size(); ++em) {
@@ -61,7 +62,7 @@ TEST_CASE("the maps of a flat slab hold the flux that exact transport says", "[c
                           Case{0.4, 45.0, true, 30.0, roulette, 1}, Case{0.4, 0.0, false, 1.0, both, 1},
                           Case{0.7, 60.0, false, 60.0, both, 3}, Case{0.4, 45.0, true, 30.0, both, 1}}) {
         Scene scene = slab_scene(c.fraction, c.angle_deg, Transport::conserving);
-        scene.materials[0].fresnel = c.fresnel;
+        translucent_of(scene).fresnel = c.fresnel;
         scene.render.branches = c.branches;
         scene.render.exits = c.exits;
         scene.fluorophores[0].quantum_yield = 0.8;

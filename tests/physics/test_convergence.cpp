@@ -18,11 +18,7 @@ Scene ball_over_floor(std::uint32_t seed, Direct direct) {
     scene.materials = {diffuse_material(reflectance), Material{}};
     add_shape(scene, "floor", 0, make_rectangle(2000.0, 2000.0));
     add_shape(scene, "lamp", 1, moved(make_sphere(4.0, 64), {0.0, height_mm, 0.0})).light = 0;
-    Light lamp;
-    lamp.name = "lamp";
-    lamp.shape = 1;
-    lamp.flux = Spectrum::constant(1.0);
-    scene.lights = {lamp};
+    scene.lights = {{"lamp", Spectrum::constant(1.0), SurfaceLight{1}}};
     // Below the lamp, whose back is not seen.
     scene.camera = camera_above({0.0, 0.0, 0.0}, 40.0, edge_mm);
     scene.film = {pixels, pixels, {}};

@@ -109,11 +109,7 @@ TEST_CASE("the film is linear in the lamp's power", "[floor]") {
 TEST_CASE("a rectangle that emits is seen with its radiance", "[floor]") {
     Scene scene = floor_scene();
     add_shape(scene, "lamp", 1, moved(make_rectangle(90.0, 60.0), {0.0, 50.0, 0.0})).light = 0;
-    Light lamp;
-    lamp.name = "lamp";
-    lamp.shape = 1;
-    lamp.flux = sloping.scaled(M_PI * 90.0 * 60.0 * 1e-6);
-    scene.lights = {lamp};
+    scene.lights = {{"lamp", sloping.scaled(M_PI * 90.0 * 60.0 * 1e-6), SurfaceLight{1}}};
     scene.render.photons_per_pass = 100;
     scene.render.radius_mm = 1.0;
     for (const bool front : {true, false}) {
@@ -149,11 +145,7 @@ TEST_CASE("a sphere that emits irradiates a floor by the form factor of a sphere
         Scene scene = floor_scene();
         scene.render.direct = direct;
         add_shape(scene, "lamp", 1, moved(make_sphere(20.0, 128), {0.0, height_mm, 0.0})).light = 0;
-        Light lamp;
-        lamp.name = "lamp";
-        lamp.shape = 1;
-        lamp.flux = sloping.scaled(1e-2);
-        scene.lights = {lamp};
+        scene.lights = {{"lamp", sloping.scaled(1e-2), SurfaceLight{1}}};
         scene.camera = camera_above({x_mm, 0.0, 0.0}, 400.0, edge_mm);
         // Half of a sphere's points, and more, face away from any other.
         if (direct == Direct::rays) scene.film = {48, 48, {}};
@@ -166,7 +158,7 @@ TEST_CASE("a sphere that emits irradiates a floor by the form factor of a sphere
                 const double x = x_mm + edge_mm * ((i + 0.5) / steps - 0.5), z = edge_mm * ((j + 0.5) / steps - 0.5);
                 form += height_mm / std::pow(x * x + z * z + height_mm * height_mm, 1.5) / (4.0 * M_PI * steps * steps);
             }
-        const Sample ratio = brightness(scene, lamp.flux.scaled(form * 1e6 * reflectance / M_PI), 16);
+        const Sample ratio = brightness(scene, scene.lights[0].flux.scaled(form * 1e6 * reflectance / M_PI), 16);
         CAPTURE(ratio.mean(), ratio.standard_error());
         CHECK(ratio.standard_error() < 0.01);
         CHECK(std::abs(ratio.mean() - 1.0) < 4.5 * ratio.standard_error() + 0.002);

@@ -22,8 +22,8 @@ Scene mixed_scene(Direct direct) {
     scene.media[0].eta = 1.5;
     Material smooth = scene.materials[1];
     smooth.name = "smooth";
-    smooth.fresnel = true;
     scene.materials.push_back(smooth);
+    translucent_of(scene, scene.materials.size() - 1).fresnel = true;
     add_shape(scene, "post", 0, moved(make_prism(4, 8.0, 30.0), {-38.0, 0.0, 5.0}));
     add_shape(scene, "slab", 3, moved(make_box({30.0, 4.0, 40.0}), {38.0, 4.0, 10.0}));
     add_shape(scene, "sheet", 0, moved(make_rectangle(30.0, 20.0), {28.0, 34.0, -12.0})).two_sided = true;

@@ -27,7 +27,7 @@ TEST_CASE("light that grows without bound is cut and counted", "[overflow]") {
     Scene scene = slab_scene(0.0, 0.0);
     scene.media[0].sigma_s = Spectrum::constant(12.0);
     scene.shapes[0].mesh = turned_over(make_sphere(30.0, 32));
-    scene.lights[0].position_mm = {0.0, 5.0, 0.0};
+    std::get<DiskBeam>(scene.lights[0].kind).position_mm = {0.0, 5.0, 0.0};
     scene.camera.position_mm = {0.0, 0.0, 10.0};
     scene.camera.target_mm = {0.0, -20.0, 0.0};
     scene.render.photons_per_pass = 2000;

@@ -20,12 +20,7 @@ Scene furnace_with_smooth_material() {
     medium.sigma_a = Spectrum::constant(0.0);
     medium.eta = eta;
     scene.media = {medium};
-    Material material;
-    material.name = "smooth";
-    material.kind = MaterialKind::translucent;
-    material.medium = 0;
-    material.fresnel = true;
-    scene.materials.push_back(material);
+    scene.materials.push_back({"smooth", TranslucentMaterial{0, {}, true}});
     scene.render.transport = Transport::conserving;
     scene.render.photons_per_pass = 400000;
     scene.render.radius_mm = 6.0;

@@ -111,8 +111,7 @@ ProbeMaterial dyed_medium(double albedo, double eta) {
     const Spectrum shape = {{365.0, 390.0}, {2.5, 1.0}, Outside::hold};
     material.medium->sigma_s = shape.scaled(albedo);
     material.medium->sigma_a = shape.scaled(1.0 - albedo);
-    material.fluorophore = dye();
-    material.fluorescent_fraction = 0.6;
+    material.dyes = {{dye(), 0.6}};
     return material;
 }
 
@@ -124,8 +123,8 @@ void check_fluorescence(Transport transport, const std::vector<Case>& cases, dou
         const double mu = cosine_within(c.eta, cosine_of(c.angle_deg));
         const Exact elastic = exact_elastic(c.albedo, c.angle_deg, c.eta);
         const double escaping = escaping_share(c.eta, mu, c.albedo, 1.0 / 2.5).total;
-        const Fluorophore& dot = *material.fluorophore;
-        const double taken_up = material.fluorescent_fraction * dot.excitation.at(365);
+        const Fluorophore& dot = material.dyes[0].fluorophore;
+        const double taken_up = material.dyes[0].fraction * dot.excitation.at(365);
         const double photons = (1.0 - elastic.specular) * taken_up * dot.quantum_yield * escaping;
         const double emission = dot.emission.sum_1nm(300, 830);
         check_near(result.emitted_photons, photons, 0.0, errors);
@@ -306,14 +305,13 @@ TEST_CASE("the series over collisions gives Chandrasekhar's reflectance", "[prob
 // wavelengths that are in the set by chance.
 TEST_CASE("light that is taken up again and again is weighted right", "[probe]") {
     ProbeMaterial material = medium_of(1.0, 0.7);
-    material.fluorophore = dye();
-    material.fluorescent_fraction = 0.7;
+    material.dyes = {{dye(), 0.7}};
     ProbeSettings settings = settings_of(Transport::walk, 0.0, 500000);
     settings.first_collision_only = false;
     const ProbeResult result = measured(material, settings);
     CHECK(result.sets == 2);
 
-    const Fluorophore& dot = *material.fluorophore;
+    const Fluorophore& dot = material.dyes[0].fluorophore;
     const std::size_t count = result.lambda_nm.size();
     const double emission = dot.emission.sum_1nm(300, 830);
     const auto uptake = [&](std::size_t i) { return 0.7 * dot.excitation.at(result.lambda_nm[i]); };
@@ -350,15 +348,52 @@ TEST_CASE("light that is taken up again and again is weighted right", "[probe]")
 TEST_CASE("surface fluorescence leaves at the beam", "[probe]") {
     ProbeMaterial material;
     material.name = "paint";
-    material.fluorophore = dye();
-    material.fluorescent_fraction = 0.5;
+    material.dyes = {{dye(), 0.5}};
     const ProbeResult result = measured(material, settings_of(Transport::conserving, 20.0, 20000));
-    const double expected = 0.5 * material.fluorophore->excitation.at(365) * 0.9;
+    const double expected = 0.5 * material.dyes[0].fluorophore.excitation.at(365) * 0.9;
     CHECK(std::abs(result.emitted_photons.value - expected) <= 3.0 * result.emitted_photons.standard_error);
     CHECK(result.emitted_photons.standard_error < 0.01 * expected);
     CHECK(result.totals[probe_total].value == Approx(result.totals[probe_fluorescence].value));
     CHECK(result.radial[probe_fluorescence][0].value * M_PI * result.r_mm[1] * result.r_mm[1] ==
           Approx(result.totals[probe_fluorescence].value));
+}
+
+// Takes up and emits at longer wavelengths than dye().
+Fluorophore second_dye() {
+    Fluorophore fluorophore = dye();
+    fluorophore.name = "second dye";
+    fluorophore.excitation = {{300.0, 450.0, 560.0}, {0.3, 0.6, 0.0}, Outside::zero};
+    fluorophore.emission = {{460.0, 500.0, 600.0}, {0.0, 1.0, 0.0}, Outside::zero};
+    fluorophore.quantum_yield = 0.5;
+    return fluorophore;
+}
+
+// What two fluorophores send back of each photon that meets them is c E QY of the one and of the other, each with its
+// own spectrum: on the surface all of it leaves; below it, with one collision that counts, the share that escapes from
+// where light of 1/2.5 mm mean free path collides first.
+TEST_CASE("two fluorophores emit the sum of what each of them does", "[probe]") {
+    for (const bool surface : {true, false}) {
+        ProbeMaterial material = dyed_medium(0.5, 1.0);
+        if (surface) material.medium.reset();
+        material.dyes = {{dye(), 0.3}, {second_dye(), 0.5}};
+        const ProbeResult result = measured(material, settings_of(Transport::conserving, 20.0, 200000));
+        const double escaping = surface ? 1.0 : escaping_share(1.0, cosine_of(20.0), 0.5, 1.0 / 2.5).total;
+        const auto photons = [&](const ProbeDye& of) {
+            return of.fraction * of.fluorophore.excitation.at(365) * of.fluorophore.quantum_yield * escaping;
+        };
+        CAPTURE(surface);
+        check_near(result.emitted_photons, photons(material.dyes[0]) + photons(material.dyes[1]));
+        for (std::size_t i = 0; i < result.lambda_nm.size(); ++i) {
+            double expected = 0.0;
+            for (const ProbeDye& of : material.dyes)
+                expected += photons(of) * of.fluorophore.emission.at(result.lambda_nm[i]) /
+                            of.fluorophore.emission.sum_1nm(300, 830) * 365.0 / result.lambda_nm[i];
+            const Measured& m = result.reflectance[probe_fluorescence][i];
+            CAPTURE(result.lambda_nm[i], m.value, m.standard_error, expected);
+            CHECK(std::abs(m.value - expected) <= 4.0 * m.standard_error);
+            CHECK(m.standard_error <= 0.01 * expected);
+        }
+    }
 }
 
 // The half-space has no length but the mean free path.

@@ -21,13 +21,7 @@ Scene plane_scene(const Spectrum& irradiance) {
     Scene scene = empty_scene("plane");
     scene.render.transport = Transport::paper;
     scene.fluorophores = {overlapping()};
-    Material material;
-    material.name = "paint";
-    material.kind = MaterialKind::translucent;
-    material.fluorophore = 0;
-    material.fluorescent_fraction = 1.0;
-    material.subsurface = false;
-    scene.materials = {material};
+    scene.materials = {{"paint", TranslucentMaterial{std::nullopt, {{0, 1.0}}, false}}};
     add_shape(scene, "plane", 0, make_rectangle(1000.0, 1000.0));
     scene.lights = {disk_beam({0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, 80.0, irradiance)};
     scene.camera = camera_above({0.0, 0.0, 0.0}, 400.0, 60.0);

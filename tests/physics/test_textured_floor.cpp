@@ -22,18 +22,12 @@ constexpr double floor_mm = 160.0;
 // nothing beside it.
 Scene checkered_floor() {
     Scene scene = empty_scene("floor");
-    Material checker = diffuse_material(0.0);
-    checker.reflectance = dark;
-    checker.white = bright;
-    checker.texture = std::make_shared<const Picture>(Picture{2, 2, {1.0f, 0.0f, 0.0f, 1.0f}, {}});
-    scene.materials = {Material{}, checker};
+    const auto checks = std::make_shared<const Picture>(Picture{2, 2, {1.0f, 0.0f, 0.0f, 1.0f}, {}});
+    scene.materials = {Material{}, {"checker", DiffuseMaterial{dark, checks, bright}}};
     add_shape(scene, "floor", 1, make_rectangle(floor_mm, floor_mm));
-    Light beam = disk_beam({0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, 0.5 * floor_mm, sloping);
-    beam.section = BeamSection::rectangle;
-    beam.half_u_mm = {0.5 * floor_mm, 0.0, 0.0};
-    beam.half_v_mm = {0.0, 0.0, 0.5 * floor_mm};
-    beam.flux = sloping.scaled(floor_mm * floor_mm * 1e-6);
-    scene.lights = {beam};
+    const RectangleBeam beam{
+        {{0.0, floor_mm, 0.0}, {0.0, -1.0, 0.0}, {0.5 * floor_mm, 0.0, 0.0}, {0.0, 0.0, 0.5 * floor_mm}}};
+    scene.lights = {{"beam", sloping.scaled(floor_mm * floor_mm * 1e-6), beam}};
     scene.film = {8, 8, {}};
     scene.render.photons_per_pass = 60000;
     scene.render.radius_mm = 5.0;
@@ -116,19 +110,13 @@ TEST_CASE("a checkered floor absorbs the mean of what its squares do, and the le
 // picture of one luminance, black + L (white - black).
 TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[textured]") {
     Scene scene = empty_scene("furnace");
-    Material paper = diffuse_material(0.2);
-    paper.white = Spectrum::constant(0.8);
-    paper.texture = std::make_shared<const Picture>(Picture{3, 1, {0.5f, 0.5f, 0.5f}, {}});
-    scene.materials = {paper};
+    const auto grey = std::make_shared<const Picture>(Picture{3, 1, {0.5f, 0.5f, 0.5f}, {}});
+    scene.materials = {{"paper", DiffuseMaterial{Spectrum::constant(0.2), grey, Spectrum::constant(0.8)}}};
     Mesh room = turned_over(make_sphere(100.0, 64));
     room.uv.assign(room.triangles.size(), {glm::vec2(0.0f), glm::vec2(1.0f, 0.0f), glm::vec2(1.0f)});
     const double area_mm2 = mesh_area_mm2(room);
     add_shape(scene, "room", 0, room).light = 0;
-    Light light;
-    light.name = "room";
-    light.shape = 0;
-    light.flux = Spectrum::constant(M_PI * area_mm2 * 1e-6);
-    scene.lights = {light};
+    scene.lights = {{"room", Spectrum::constant(M_PI * area_mm2 * 1e-6), SurfaceLight{0}}};
     scene.camera.position_mm = {20.0, -10.0, 5.0};
     scene.camera.target_mm = {-30.0, 40.0, 10.0};
     scene.film = {8, 8, {}};

@@ -30,12 +30,8 @@ Scene two_tiles(Transport transport, int other) {
     Fluorophore red = scene.fluorophores[0];
     red.emission = {{620.0, 650.0, 680.0}, {0.0, 1.0, 0.0}, Outside::zero};
     scene.fluorophores.push_back(red);
-    Material second = scene.materials[0];
-    second.medium = second.fluorophore = 1;
-    second.fluorescent_fraction = 0.9;
-    scene.materials.push_back(second);
-    second.fresnel = true;
-    scene.materials.push_back(second);
+    for (const bool fresnel : {false, true})
+        scene.materials.push_back({"second", TranslucentMaterial{1, {{1, 0.9}}, fresnel}});
     const std::vector<Mesh> tiles = make_tiles({size_mm, size_mm, size_mm}, 2, 1, 2);
     scene.shapes.clear();
     for (int k = 0; k < 2; ++k) {
@@ -44,7 +40,7 @@ Scene two_tiles(Transport transport, int other) {
     }
     scene.body_count = 1;
     scene.render.photons_per_pass = 16384;
-    Light& beam = scene.lights[0];
+    Beam& beam = std::get<DiskBeam>(scene.lights[0].kind);
     beam.position_mm.x = -border_mm;
     beam.half_u_mm *= 0.01;
     beam.half_v_mm *= 0.01;

@@ -10,7 +10,7 @@ namespace {
 double conversion(const Scene& scene, std::size_t ex, std::size_t em) {
     const PassWavelengths w = test_wavelengths();
     const auto rows = reradiation_rows(scene.fluorophores[0], Transport::walk, w.set, w.pair_weight_nm);
-    return scene.materials[0].fluorescent_fraction * static_cast<double>(rows[ex].v[em]);
+    return fluorescent_fraction(as_translucent(scene.materials[0])->dyes) * static_cast<double>(rows[ex].v[em]);
 }
 
 Material16 fluorescent() {

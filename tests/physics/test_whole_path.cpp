@@ -129,11 +129,7 @@ TEST_CASE("no light goes through a thin wall", "[whole_path]") {
     add_shape(scene, "box", 0, turned_over(make_box({200.0, 100.0, 100.0})));
     add_shape(scene, "wall", 0, make_box({thickness_mm, 104.0, 104.0}));
     add_shape(scene, "lamp", 1, moved(turned_over(make_rectangle(50.0, 50.0)), {50.0, 49.0, 0.0})).light = 0;
-    Light lamp;
-    lamp.name = "lamp";
-    lamp.shape = 2;
-    lamp.flux = Spectrum::constant(1e-3);
-    scene.lights = {lamp};
+    scene.lights = {{"lamp", Spectrum::constant(1e-3), SurfaceLight{2}}};
     scene.film = {24, 24, {}};
     scene.render.photons_per_pass = 20000;
     scene.render.radius_mm = radius_mm;

@@ -77,24 +77,16 @@ inline Scene beam_scene(const Material16& m, const Mesh& mesh, double mu) {
     fluorophore.excitation = spectrum_of(m.excitation);
     fluorophore.emission = spectrum_of(m.emission);
     scene.fluorophores = {fluorophore};
-    Material material;
-    material.name = "material";
-    material.kind = MaterialKind::translucent;
-    material.medium = 0;
-    material.fluorophore = m.fraction > 0.0 ? 0 : -1;
-    material.fluorescent_fraction = m.fraction;
-    material.fresnel = m.fresnel;
-    scene.materials = {material};
+    TranslucentMaterial material{0, {}, m.fresnel};
+    if (m.fraction > 0.0) material.dyes = {{0, m.fraction}};
+    scene.materials = {{"material", material}};
     add_shape(scene, "body", 0, mesh);
-    Light beam;
-    beam.name = "beam";
-    beam.kind = LightKind::beam;
-    beam.flux = Spectrum::constant(1.0);
+    DiskBeam beam;
     beam.direction = {std::sqrt(1.0 - mu * mu), -mu, 0.0};
     beam.position_mm = -50.0 * beam.direction;
     beam.half_u_mm = {0.0, 0.0, 0.01};
     beam.half_v_mm = glm::cross(beam.direction, beam.half_u_mm);
-    scene.lights = {beam};
+    scene.lights = {{"beam", Spectrum::constant(1.0), beam}};
     return scene;
 }
 

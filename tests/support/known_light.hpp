@@ -20,15 +20,12 @@ namespace stokes {
 // disk about the point that it hits first.
 inline Light disk_beam(const glm::dvec3& through_mm, const glm::dvec3& direction, double radius_mm,
                        const Spectrum& irradiance) {
-    Light light;
-    light.name = "beam";
-    light.kind = LightKind::beam;
-    light.direction = glm::normalize(direction);
-    light.position_mm = through_mm - 2.0 * radius_mm * light.direction;
-    light.half_u_mm = radius_mm * glm::normalize(glm::cross(light.direction, glm::dvec3(0.1, 0.2, 1.0)));
-    light.half_v_mm = glm::cross(light.direction, light.half_u_mm);
-    light.flux = irradiance.scaled(M_PI * radius_mm * radius_mm * 1e-6);
-    return light;
+    DiskBeam beam;
+    beam.direction = glm::normalize(direction);
+    beam.position_mm = through_mm - 2.0 * radius_mm * beam.direction;
+    beam.half_u_mm = radius_mm * glm::normalize(glm::cross(beam.direction, glm::dvec3(0.1, 0.2, 1.0)));
+    beam.half_v_mm = glm::cross(beam.direction, beam.half_u_mm);
+    return {"beam", irradiance.scaled(M_PI * radius_mm * radius_mm * 1e-6), beam};
 }
 
 // A camera above a point of the plane y = 0 that sees a square of it, edge_mm wide.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/shared/material.h"
 #include "kernels/shared/pass.h"
 #include "kernels/shared/path.h"
 #include "kernels/shared/photon.h"
@@ -105,6 +106,16 @@ inline double worst_imbalance(const std::vector<PathLedger>& ledgers, const std:
     for (std::size_t i = 0; i < ledgers.size(); ++i)
         worst = std::max(worst, std::abs(imbalance_of(ledgers[i], carried[i])));
     return worst;
+}
+
+// Of a translucent material, model `paper`; flags: STOKES_MATERIAL_*.
+inline MaterialRecord translucent_record(std::uint32_t flags, float fluorescent_fraction, float eta = 1.0f) {
+    MaterialRecord record{};
+    record.kind = STOKES_TRANSLUCENT;
+    record.flags = flags;
+    record.fluorescent_fraction = fluorescent_fraction;
+    record.eta = eta;
+    return record;
 }
 
 // Two unit vectors at right angles to n and to each other, by another construction than the kernels'.

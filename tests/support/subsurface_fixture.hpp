@@ -99,9 +99,15 @@ struct MadeUpTables {
 
 // Materials 0 and 1 have subsurface scattering in media 1 and 0, material 2 has surface fluorescence.
 inline std::vector<MaterialRecord> translucent_materials() {
-    return {{STOKES_TRANSLUCENT, 1, 0.5f, 1.5f, 3, 4, STOKES_NONE, 0.0f},
-            {STOKES_TRANSLUCENT, 0, 0.3f, 1.0f, 20, 21, STOKES_NONE, 0.0f},
-            {STOKES_TRANSLUCENT, STOKES_NONE, 1.0f, 1.0f, 3, 4, STOKES_NONE, 0.0f}};
+    constexpr std::uint32_t below = STOKES_MATERIAL_SUBSURFACE | STOKES_MATERIAL_FLUORESCENT;
+    std::vector<MaterialRecord> materials = {translucent_record(below, 0.5f, 1.5f), translucent_record(below, 0.3f),
+                                             translucent_record(STOKES_MATERIAL_FLUORESCENT, 1.0f)};
+    materials[0].medium = 1;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        materials[i].excitation_row = i == 1 ? 20 : 3;
+        materials[i].reradiation_row = materials[i].excitation_row + 1;
+    }
+    return materials;
 }
 
 // Three rows of reflectance, then excitation and re-radiation of two fluorophores; emission only above the
@@ -118,6 +124,8 @@ inline std::vector<Flux16> translucent_spectra() {
     }
     return rows;
 }
+
+inline bool has(const MaterialRecord& material, std::uint32_t flag) { return (material.flags & flag) != 0; }
 
 // Sum over excitation wavelengths of flux there times the row of what it becomes (eq. 1-2).
 inline std::array<double, 16> reradiated(const MaterialRecord& material, const std::vector<Flux16>& spectra,

@@ -26,24 +26,16 @@ Medium marble_green() {
     return medium;
 }
 
-Material translucent(double fraction) {
-    Material material;
-    material.name = "translucent";
-    material.kind = MaterialKind::translucent;
-    material.medium = 0;
-    material.fluorophore = 0;
-    material.fluorescent_fraction = fraction;
-    return material;
-}
+Material translucent(double fraction) { return {"translucent", TranslucentMaterial{0, {{0, fraction}}, false}}; }
 
 }  // namespace
 
+TranslucentMaterial& translucent_of(Scene& scene, std::size_t material) {
+    return std::get<TranslucentMaterial>(scene.materials[material].kind);
+}
+
 Material diffuse_material(double reflectance) {
-    Material material;
-    material.name = "diffuse";
-    material.kind = MaterialKind::diffuse;
-    material.reflectance = Spectrum::constant(reflectance);
-    return material;
+    return {"diffuse", DiffuseMaterial{Spectrum::constant(reflectance), nullptr, Spectrum::constant(0.0)}};
 }
 
 Shape& add_shape(Scene& scene, const std::string& name, int material, const Mesh& mesh) {
@@ -78,11 +70,7 @@ Scene furnace_scene(double reflectance) {
     scene.materials = {diffuse_material(reflectance)};
     Shape& wall = add_shape(scene, "wall", 0, turned_over(make_sphere(100.0, 64)));
     wall.light = 0;
-    Light light;
-    light.name = "wall";
-    light.shape = 0;
-    light.flux = Spectrum::constant(M_PI * mesh_area_mm2(scene.shapes[0].mesh) * 1e-6);
-    scene.lights = {light};
+    scene.lights = {{"wall", Spectrum::constant(M_PI * mesh_area_mm2(wall.mesh) * 1e-6), SurfaceLight{0}}};
     scene.camera.position_mm = {20.0, -10.0, 5.0};
     scene.camera.target_mm = {-30.0, 40.0, 10.0};
     scene.film = {16, 16, {}};
@@ -97,16 +85,13 @@ Scene slab_scene(double fluorescent_fraction, double angle_deg, Transport transp
     scene.fluorophores = {dot_like()};
     scene.materials = {translucent(fluorescent_fraction)};
     add_shape(scene, "slab", 0, make_rectangle(2000.0, 2000.0));
-    Light light;
-    light.name = "beam";
-    light.kind = LightKind::beam;
-    light.flux = {{300.0, 500.0, 780.0}, {3e-3, 1e-3, 2e-3}, Outside::zero};
     const double angle = angle_deg * M_PI / 180.0;
-    light.direction = {std::sin(angle), -std::cos(angle), 0.0};
-    light.position_mm = -50.0 * light.direction;
-    light.half_u_mm = {0.0, 0.0, 1.0};
-    light.half_v_mm = glm::cross(light.direction, light.half_u_mm);
-    scene.lights = {light};
+    DiskBeam beam;
+    beam.direction = {std::sin(angle), -std::cos(angle), 0.0};
+    beam.position_mm = -50.0 * beam.direction;
+    beam.half_u_mm = {0.0, 0.0, 1.0};
+    beam.half_v_mm = glm::cross(beam.direction, beam.half_u_mm);
+    scene.lights = {{"beam", {{300.0, 500.0, 780.0}, {3e-3, 1e-3, 2e-3}, Outside::zero}, beam}};
     scene.camera.position_mm = {0.0, 100.0, 1.0};
     scene.camera.target_mm = {0.0, 0.0, 0.0};
     scene.film = {8, 8, {}};
@@ -125,11 +110,8 @@ Scene small_scene(Transport transport) {
     Mesh lamp = make_disk(20.0, 32);
     for (glm::vec3& p : lamp.positions_mm) p = {p.x, 90.0f - p.y, -p.z};
     add_shape(scene, "lamp", 2, lamp).light = 0;
-    Light light;
-    light.name = "lamp";
-    light.shape = 2;
-    light.flux = {{300.0, 360.0, 420.0, 780.0}, {0.0, 1e-2, 1e-3, 1e-3}, Outside::zero};
-    scene.lights = {light};
+    const Spectrum flux = {{300.0, 360.0, 420.0, 780.0}, {0.0, 1e-2, 1e-3, 1e-3}, Outside::zero};
+    scene.lights = {{"lamp", flux, SurfaceLight{2}}};
     scene.camera.position_mm = {0.0, 60.0, 110.0};
     scene.camera.target_mm = {0.0, 12.0, 0.0};
     scene.film = {32, 24, {}};

@@ -16,6 +16,9 @@ Mesh moved(Mesh mesh, const glm::dvec3& by_mm);
 // The same surface with its front on the other side.
 Mesh turned_over(Mesh mesh);
 
+// That material, which is translucent.
+TranslucentMaterial& translucent_of(Scene& scene, std::size_t material = 0);
+
 // An empty scene, the start of every scene here. Its passes draw their wavelengths uniformly, as draw_wavelengths()
 // does, and photons start evenly over the lights: to aim them takes trial passes that cost more than a test's passes.
 Scene empty_scene(const std::string& name);

@@ -51,8 +51,8 @@ void ConservingTransport::reserve_tables(const Device& device, const Scene& scen
         const Extinction sigma_t = extinction_of(medium, scene.render);
         for (const bool fresnel : {false, true}) {
             const auto owned = [&](const Material& material) {
-                return has_subsurface(material) && material.medium == static_cast<int>(m) &&
-                       material.fresnel == fresnel;
+                return medium_of(material) == static_cast<int>(m) &&
+                       reflects(material, Transport::conserving) == fresnel;
             };
             if (std::none_of(scene.materials.begin(), scene.materials.end(), owned)) continue;
             Owner owner{static_cast<int>(m), fresnel ? medium.eta : 1.0, rows, {}};

@@ -18,7 +18,7 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
 std::vector<bool> needed_media(const Scene& scene) {
     std::vector<bool> needed(scene.media.size(), false);
     for (const Material& material : scene.materials)
-        if (has_subsurface(material)) needed[static_cast<std::size_t>(material.medium)] = true;
+        if (const auto medium = medium_of(material)) needed[static_cast<std::size_t>(*medium)] = true;
     return needed;
 }
 

@@ -274,8 +274,7 @@ std::vector<BodyKind> check_walkable(const Scene& scene) {
     std::vector<bool> seen(kinds.size(), false);
     for (const Shape& shape : scene.shapes) {
         const auto body = static_cast<std::size_t>(shape.body);
-        const Material& material = scene.materials[static_cast<std::size_t>(shape.material)];
-        if (seen[body] || material.kind != MaterialKind::translucent || !material.subsurface) continue;
+        if (seen[body] || !medium_of(scene.materials[static_cast<std::size_t>(shape.material)])) continue;
         seen[body] = true;
         const BodyTopology topology = body_topology(scene, shape.body);
         if (topology.kind == BodyKind::open)

@@ -75,27 +75,23 @@ int emitter_material(const JsonCursor& light, Scene& scene) {
     return static_cast<int>(scene.materials.size()) - 1;
 }
 
+Beam place_beam(const ObjectReader& where, double half_width_mm, double half_height_mm) {
+    const Frame frame = read_frame(where, "direction");
+    return {where.vector("position_mm"), frame.axis, half_width_mm * frame.u, half_height_mm * frame.v};
+}
+
 Light read_beam(const ObjectReader& where, SpectrumReader& spectra, const RenderSettings& render) {
     Light light;
-    light.kind = LightKind::beam;
     double area_mm2 = 0.0;
     if (where.kind() == "beam_disk") {
-        const Frame frame = read_frame(where, "direction");
         const double radius_mm = where.number("radius_mm");
-        light.section = BeamSection::disk;
-        light.half_u_mm = radius_mm * frame.u;
-        light.half_v_mm = radius_mm * frame.v;
-        light.direction = frame.axis;
+        light.kind = DiskBeam{place_beam(where, radius_mm, radius_mm)};
         area_mm2 = M_PI * radius_mm * radius_mm;
     } else {
-        const Frame frame = read_frame(where, "direction");
-        light.section = BeamSection::rectangle;
-        light.half_u_mm = 0.5 * where.number("width_mm") * frame.u;
-        light.half_v_mm = 0.5 * where.number("height_mm") * frame.v;
-        light.direction = frame.axis;
-        area_mm2 = 4.0 * glm::length(light.half_u_mm) * glm::length(light.half_v_mm);
+        const RectangleBeam beam{place_beam(where, 0.5 * where.number("width_mm"), 0.5 * where.number("height_mm"))};
+        light.kind = beam;
+        area_mm2 = 4.0 * glm::length(beam.half_u_mm) * glm::length(beam.half_v_mm);
     }
-    light.position_mm = where.vector("position_mm");
     const double power_w = where.number("irradiance_W_m2") * area_mm2 * m2_per_mm2;
     light.flux = with_total(where, spectra.read(where, "spectrum", Outside::zero), power_w, render);
     return light;
@@ -121,16 +117,16 @@ Mesh read_emitter_mesh(const ObjectReader& where, glm::dmat4& transform) {
     return mesh;
 }
 
-Light read_emitter(const ObjectReader& where, SpectrumReader& spectra, Scene& scene) {
+Light read_emitter(const ObjectReader& where, const std::string& name, SpectrumReader& spectra, Scene& scene) {
     Shape shape;
+    shape.name = name;
     glm::dmat4 transform(1.0);
     shape.mesh = read_emitter_mesh(where, transform);
     shape.material = emitter_material(where, scene);
     shape.body = scene.body_count++;
     shape.light = static_cast<int>(scene.lights.size());
     Light light;
-    light.kind = LightKind::surface;
-    light.shape = add_shape(where, std::move(shape), transform, scene);
+    light.kind = SurfaceLight{add_shape(where, std::move(shape), transform, scene)};
     const double area_mm2 = mesh_area_mm2(scene.shapes.back().mesh);
     const Spectrum spectrum = spectra.read(where, "spectrum", Outside::zero);
     light.flux = emitter_flux(where, spectrum, area_mm2, scene.render);
@@ -144,10 +140,10 @@ void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene
     for (const JsonCursor& place : lights.items()) {
         const ObjectReader where(place, "light");
         const bool beam = where.kind() == "beam_disk" || where.kind() == "beam_rectangle";
-        Light light = beam ? read_beam(where, spectra, scene.render) : read_emitter(where, spectra, scene);
-        light.name = read_own_name(where, fmt::format("light {}", names.size()), names);
-        names.push_back(light.name);
-        if (light.shape >= 0) scene.shapes[static_cast<std::size_t>(light.shape)].name = light.name;
+        names.push_back(read_own_name(where, fmt::format("light {}", names.size()), names));
+        Light light =
+            beam ? read_beam(where, spectra, scene.render) : read_emitter(where, names.back(), spectra, scene);
+        light.name = names.back();
         scene.lights.push_back(std::move(light));
     }
     if (scene.lights.empty()) lights.fail("expected at least one light");

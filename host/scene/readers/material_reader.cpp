@@ -11,6 +11,7 @@ namespace stokes {
 namespace {
 
 constexpr NumberRange sigma_t_range{smallest_sigma_t_per_mm, largest_sigma_t_per_mm};
+constexpr double fraction_rounding = 1e-9;  // 0.1, 0.2 and 0.7 may add up to a little more than 1
 
 Medium read_medium(const std::string& name, const JsonCursor& place, SpectrumReader& spectra) {
     const ObjectReader where(place, "medium");
@@ -57,9 +58,8 @@ std::shared_ptr<const Picture> read_texture(const std::string& path) {
 
 using TextureFiles = InputFiles<std::shared_ptr<const Picture>, read_texture>;
 
-Material read_diffuse(const ObjectReader& where, SpectrumReader& spectra, TextureFiles& textures) {
-    Material material;
-    material.kind = MaterialKind::diffuse;
+DiffuseMaterial read_diffuse(const ObjectReader& where, SpectrumReader& spectra, TextureFiles& textures) {
+    DiffuseMaterial material;
     if (!where.at("reflectance").has("texture")) {
         material.reflectance = spectra.read(where.at("reflectance"), Outside::hold, 1.0);
         return material;
@@ -71,37 +71,54 @@ Material read_diffuse(const ObjectReader& where, SpectrumReader& spectra, Textur
     return material;
 }
 
-void check_fresnel(const JsonCursor& fresnel, const Material& material, const Scene& scene) {
-    if (material.medium < 0) fresnel.fail("Fresnel reflection needs a medium and subsurface light");
-    const double eta = scene.media[static_cast<std::size_t>(material.medium)].eta;
+void check_fresnel(const JsonCursor& fresnel, const TranslucentMaterial& material, const Scene& scene) {
+    if (!material.medium) fresnel.fail("Fresnel reflection needs a medium and subsurface light");
+    const double eta = scene.media[static_cast<std::size_t>(*material.medium)].eta;
     if (eta > largest_green_eta)
         fresnel.fail(
             fmt::format("Fresnel reflection needs a medium with eta up to {:g}, got {:g}", largest_green_eta, eta));
 }
 
-Material read_translucent(const ObjectReader& where, const Scene& scene) {
-    Material material;
-    material.kind = MaterialKind::translucent;
-    material.subsurface = where.boolean("subsurface");
+// "fluorophores" with the share of each, or the short form for one: "fluorophore" and "fluorescent_fraction".
+std::vector<Dye> read_dyes(const ObjectReader& where, const Scene& scene) {
+    const auto index = [&](const JsonCursor& name) { return index_of_name(name, "fluorophores", scene.fluorophores); };
+    const auto list = where.find("fluorophores"), one = where.find("fluorophore");
+    const auto fraction = where.find("fluorescent_fraction");
+    if (list && (one || fraction))
+        list->fail("expected either this or \"fluorophore\" and \"fluorescent_fraction\", got both");
+    if (one && !fraction) where.fail("missing key \"fluorescent_fraction\", which belongs to a fluorophore");
+    if (one) return {{index(*one), where.number("fluorescent_fraction")}};
+    if (where.number("fluorescent_fraction") > 0.0)
+        fraction->fail("a fluorescent fraction without the key \"fluorophore\"");
+    std::vector<Dye> dyes;
+    if (!list) return dyes;
+    for (const JsonCursor& item : list->items()) {
+        const ObjectReader dye(item, "dye");
+        const int fluorophore = index(dye.at("fluorophore"));
+        const auto same = [&](const Dye& other) { return other.fluorophore == fluorophore; };
+        if (std::any_of(dyes.begin(), dyes.end(), same))
+            dye.at("fluorophore").fail(fmt::format("\"{}\" given twice", dye.at("fluorophore").text()));
+        dyes.push_back({fluorophore, dye.number("fraction")});
+    }
+    if (dyes.empty()) list->fail_expected("one or more fluorophores");
+    if (const double sum = fluorescent_fraction(dyes); sum > 1.0 + fraction_rounding)
+        list->fail(fmt::format("expected fractions that add up to 1 at most, got {:g}", sum));
+    return dyes;
+}
+
+TranslucentMaterial read_translucent(const ObjectReader& where, const Scene& scene) {
+    TranslucentMaterial material;
     const auto medium = where.find("medium");
     if (medium) material.medium = index_of_name(*medium, "media", scene.media);
-    if (!medium && material.subsurface) where.fail("missing key \"medium\", which subsurface light needs");
-    if (!material.subsurface) material.medium = -1;
+    if (!where.boolean("subsurface"))
+        material.medium.reset();
+    else if (!medium)
+        where.fail("missing key \"medium\", which subsurface light needs");
     material.fresnel = where.boolean("fresnel");
     if (material.fresnel) check_fresnel(where.at("fresnel"), material, scene);
-
-    const auto fluorophore = where.find("fluorophore");
-    const auto fraction = where.find("fluorescent_fraction");
-    if (fluorophore) {
-        material.fluorophore = index_of_name(*fluorophore, "fluorophores", scene.fluorophores);
-        if (!fraction) where.fail("missing key \"fluorescent_fraction\", which belongs to a fluorophore");
-    } else if (!material.subsurface) {
+    material.dyes = read_dyes(where, scene);
+    if (material.dyes.empty() && !material.medium)
         where.fail("missing key \"fluorophore\": without subsurface light it is all that this material does");
-    }
-    material.fluorescent_fraction = where.number("fluorescent_fraction");
-    if (!fluorophore && material.fluorescent_fraction > 0.0) {
-        fraction->fail("a fluorescent fraction without the key \"fluorophore\"");
-    }
     return material;
 }
 
@@ -126,8 +143,8 @@ std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader
     for (const auto& [name, place] : materials.named_members()) {
         const ObjectReader where(place, "material");
         Material material;
-        if (where.kind() == "material_diffuse") material = read_diffuse(where, spectra, textures);
-        if (where.kind() == "material_translucent") material = read_translucent(where, scene);
+        if (where.kind() == "material_diffuse") material.kind = read_diffuse(where, spectra, textures);
+        if (where.kind() == "material_translucent") material.kind = read_translucent(where, scene);
         material.name = name;
         result.push_back(std::move(material));
     }

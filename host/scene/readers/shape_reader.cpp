@@ -96,10 +96,7 @@ std::vector<int> read_part_materials(const JsonCursor& where, const Scene& scene
     const std::vector<JsonCursor> items = where.items();
     if (items.empty()) where.fail_expected("one or more names of materials");
     std::vector<int> materials;
-    const auto is_translucent = [&](int m) {
-        const Material& material = material_of(scene, m);
-        return material.kind == MaterialKind::translucent && material.subsurface;
-    };
+    const auto is_translucent = [&](int m) { return medium_of(material_of(scene, m)).has_value(); };
     for (const JsonCursor& item : items) {
         materials.push_back(index_of_name(item, "materials", scene.materials));
         if (is_translucent(materials.back()) != is_translucent(materials.front()))
@@ -185,7 +182,7 @@ void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, 
         shape.name = name;
         shape.material = index_of_name(where.at("material"), "materials", scene.materials);
         shape.two_sided = where.kind() == "shape_mask";
-        if (shape.two_sided && material_of(scene, shape.material).kind == MaterialKind::translucent)
+        if (shape.two_sided && as_translucent(material_of(scene, shape.material)) != nullptr)
             where.at("material").fail("expected a black or diffuse material for a mask, got a translucent one");
         shape.body = read_body(where, shape.material, scene, bodies);
         add_shape(where, std::move(shape), read_transform(where), scene);
@@ -202,8 +199,9 @@ int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform,
         }
     }
     const Material& material = material_of(scene, shape.material);
-    if (!material.texture) shape.mesh.uv.clear();
-    if (material.texture && shape.mesh.uv.empty())
+    const bool textured = texture_of(material) != nullptr;
+    if (!textured) shape.mesh.uv.clear();
+    if (textured && shape.mesh.uv.empty())
         where.fail(
             fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
                         "mesh with texture coordinates{}",

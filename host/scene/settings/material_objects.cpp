@@ -61,6 +61,9 @@ Objects materials() {
           {"fluorophore", NameIn{"fluorophores"}, optional, "A name in fluorophores."},
           {"fluorescent_fraction", unit_range, 0.0,
            "Probability that a photon meets the fluorophore. Given with a fluorophore, and only then above zero."},
+          {"fluorophores", ListOf{"dye", 1}, optional,
+           "Several fluorophores, each once, in place of fluorophore and fluorescent_fraction. The fractions add up to "
+           "1 at most."},
           {"subsurface", YesNo{}, true, "false: fluorescence of the surface alone, which needs a fluorophore."},
           {"fresnel", YesNo{}, false,
            "true: the surface is smooth and reflects, outside and within, by the medium's eta; only with subsurface "
@@ -68,10 +71,17 @@ Objects materials() {
          {},
          R"({
              "allOf": [{"if": {"properties": {"subsurface": {"const": false}}, "required": ["subsurface"]},
-                        "then": {"required": ["fluorophore"], "properties": {"fresnel": {"const": false}}},
-                        "else": {"required": ["medium"]}}],
+                        "then": {"anyOf": [{"required": ["fluorophore"]}, {"required": ["fluorophores"]}],
+                                 "properties": {"fresnel": {"const": false}}},
+                        "else": {"required": ["medium"]}},
+                       {"if": {"required": ["fluorophores"]},
+                        "then": {"properties": {"fluorophore": false, "fluorescent_fraction": false}}}],
              "dependentRequired": {"fluorophore": ["fluorescent_fraction"]}
          })"},
+        {"dye",
+         "A fluorophore of a material and its share.",
+         {{"fluorophore", NameIn{"fluorophores"}, required, "A name in fluorophores."},
+          {"fraction", unit_range, required, "Probability that a photon meets this fluorophore."}}},
         {"reflectance_texture",
          "Between two spectra, by the linear luminance of a picture, which lies over rectangles and disks with its "
          "top left corner at -x and -z and over meshes by their texture coordinates.",
