@@ -1,5 +1,5 @@
-// Light that reaches the camera: that of emitters which camera rays meet, light that falls straight from the lights onto
-// the points which they meet, and the density estimate over the photon maps.
+// Light that reaches the camera: that of emitters which camera rays meet, light that falls straight from the lights
+// onto the points which they meet, and the density estimate over the photon maps.
 #pragma once
 
 #include <optional>

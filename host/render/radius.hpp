@@ -23,8 +23,8 @@ double pass_radius_mm(double first_mm, double alpha, std::uint32_t pass);
 double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint>& points,
                        const std::vector<PhotonHead>& photons);
 
-// The first radius when no photon lies where the camera looks: all photons are taken as uniform over the scene's surface
-// (or over its bounding sphere, where that is smaller). RunError for a scene without surfaces.
+// The first radius when no photon lies where the camera looks: all photons are taken as uniform over the scene's
+// surface (or over its bounding sphere, where that is smaller). RunError for a scene without surfaces.
 double spread_radius_mm(const Scene& scene, std::int64_t photons);
 
 // The scene's bounding box [mm]; a point at the origin for a scene without shapes.

@@ -68,9 +68,9 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     device_.reset_stage_times();
 }
 
-// Runs the trial passes. The first radius is that of photons that start at random and are all stored, so that it does not
-// depend on how the scene is sampled. Local radii are factors on this radius, also where the scene gives another; they
-// come from photons as the scene samples them.
+// Runs the trial passes. The first radius is that of photons that start at random and are all stored, so that it does
+// not depend on how the scene is sampled. Local radii are factors on this radius, also where the scene gives another;
+// they come from photons as the scene samples them.
 void Renderer::set_up_passes() {
     const ResolvedSettings render = resolved(scene_.render);
     const bool local = render.radii == Radii::local;
@@ -97,9 +97,9 @@ void Renderer::set_up_passes() {
     gather_.set_radii(find_local_radii(found_mm));
 }
 
-// Traces the photons of a trial pass. They have the same flux at every wavelength, because a lamp of few wavelengths might
-// be dark at all of those that were drawn. Each is stored once an event: copies in several places would count as photons
-// that found their own way.
+// Traces the photons of a trial pass. They have the same flux at every wavelength, because a lamp of few wavelengths
+// might be dark at all of those that were drawn. Each is stored once an event: copies in several places would count as
+// photons that found their own way.
 void Renderer::make_trial_photons(bool as_plain) {
     photon_pass_.prepare(trial_pass, photons_);
     photon_pass_.inputs().set_photon_flux(1.0f);
@@ -124,8 +124,8 @@ double Renderer::find_first_radius() {
     return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
 }
 
-// Runs trial passes that leave nothing in the film: what their photons bring to the picture says where more should start.
-// Their wavelengths are drawn by importance, so that few passes suffice for all of the light.
+// Runs trial passes that leave nothing in the film: what their photons bring to the picture says where more should
+// start. Their wavelengths are drawn by importance, so that few passes suffice for all of the light.
 EmissionCells Renderer::aimed_cells() {
     const std::vector<EmittingLight> lights = emitting_lights(scene_, on_device_);
     const RenderSettings& render = scene_.render;
