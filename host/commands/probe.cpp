@@ -19,6 +19,7 @@
 #include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/scene/readers/scene_reader.hpp"
 
 namespace stokes {
@@ -91,8 +92,8 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
     }
     read_settings(options.render, scene);
     const ProbeSettings settings = settings_of(command, options, scene.render);
-    if (material.fresnel && settings.transport == Transport::paper)
-        warn("the model paper leaves out Fresnel reflection");
+    if (material.fresnel && !transport_model(settings.transport).has_fresnel())
+        warn(fmt::format("the model {} leaves out Fresnel reflection", word_of(settings.transport)));
     const Device device = open_device(options.device);
     HalfSpaceProbe probe(device, material, settings);
     const ProbeResult result = probe.measure(options.lambda_nm);

@@ -17,7 +17,7 @@
 #include "host/render/assumptions.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
-#include "host/scene/mesh/mesh_topology.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/scene/readers/scene_reader.hpp"
 
 namespace stokes {
@@ -92,10 +92,11 @@ void render(const RenderOptions& options) {
     check_outputs(outputs, options.scene_file);
     check_keeps(outputs, options.reference_file, "the reference");
     const Scene scene = read_scene(options.scene_file, options.settings);
-    if (scene.render.transport == Transport::walk) check_walkable(scene);  // before the device is opened
+    const TransportModel& model = transport_model(scene.render.transport);
+    model.check(scene);  // before the device is opened
     const std::unique_ptr<ErrorCurve> curve = make_curve(options, scene.film);
-    warn_about_models(scene);
-    warn_about_assumptions(scene);
+    for (const std::string& line : model.remarks(scene)) warn(line);
+    for (const std::string& line : failed_assumptions(scene)) warn(line);
     std::signal(SIGINT, catch_signal);
     std::signal(SIGTERM, catch_signal);
     Device device = open_device_for(options);

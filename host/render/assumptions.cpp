@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/core/log.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/scene/mesh/mesh_thickness.hpp"
 #include "host/scene/mesh/mesh_topology.hpp"
 
@@ -34,12 +34,14 @@ Length longest_reach(const Scene& scene, const Medium& medium, double mean_free_
     return longest;
 }
 
-// The first shape of each body with this material.
-std::vector<const Shape*> bodies_of(const Scene& scene, int material) {
+// The first shape of each body with this material and transport.
+std::vector<const Shape*> bodies_of(const Scene& scene, const MaterialUse& use) {
     std::vector<const Shape*> bodies;
     for (const Shape& shape : scene.shapes) {
         const auto known = [&](const Shape* other) { return other->body == shape.body; };
-        if (shape.material == material && std::none_of(bodies.begin(), bodies.end(), known)) bodies.push_back(&shape);
+        if (shape.material == use.material && transport_of_body(scene, shape.body) == use.transport &&
+            std::none_of(bodies.begin(), bodies.end(), known))
+            bodies.push_back(&shape);
     }
     return bodies;
 }
@@ -80,11 +82,11 @@ std::string curved_line(const Worst& most_curved, const Length& diffuse) {
 }
 
 // "" where every body of this material is as good as a half-space.
-std::string failure(const Scene& scene, int material, const Medium& medium) {
+std::string failure(const Scene& scene, const MaterialUse& use, const Medium& medium) {
     const Length reach = longest_reach(scene, medium, opaque_mean_free_paths);
     const Length diffuse = longest_reach(scene, medium, 1.0);
     Worst thinnest, most_curved;
-    for (const Shape* shape : bodies_of(scene, material)) {
+    for (const Shape* shape : bodies_of(scene, use)) {
         const BodyTopology topology = body_topology(scene, shape->body);
         if (topology.kind == BodyKind::flat || !(topology.area_mm2 > 0.0)) continue;
         const double thickness = median_thickness_mm(scene, shape->body);
@@ -100,48 +102,18 @@ std::string failure(const Scene& scene, int material, const Medium& medium) {
 
 }  // namespace
 
-std::vector<std::string> model_remarks(const Scene& scene) {
-    std::vector<std::string> lines;
-    if (scene.render.transport != Transport::paper) return lines;
-    for (const Fluorophore& fluorophore : scene.fluorophores) {
-        const double gain = fluorophore.conversion * fluorophore.emission.sum_1nm();
-        if (gain > 1.0)
-            lines.push_back(fmt::format(
-                "{}: fluorophores.{}: emits up to {:.3g} times what it takes up (conversion_per_nm times the "
-                "sum of its emission)",
-                scene.file, fluorophore.name, gain));
-    }
-    std::string names;
-    for (const Material& material : scene.materials)
-        if (const auto* translucent = as_translucent(material); translucent != nullptr && translucent->fresnel)
-            names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
-    if (!names.empty())
-        lines.push_back(fmt::format("{}: materials: transport \"paper\" leaves out the Fresnel reflection of {}",
-                                    scene.file, names));
-    return lines;
-}
-
 std::vector<std::string> failed_assumptions(const Scene& scene) {
     std::vector<std::string> lines;
-    if (scene.render.transport == Transport::walk) return lines;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        const Material& material = scene.materials[i];
+    for (const MaterialUse& use : material_uses(scene)) {
+        const Material& material = scene.materials[static_cast<std::size_t>(use.material)];
         const std::optional<int> medium = medium_of(material);
-        if (!medium) continue;
-        const std::string failed = failure(scene, static_cast<int>(i), scene.media[static_cast<std::size_t>(*medium)]);
+        if (!medium || !transport_model(use.transport).takes_bodies_for_half_spaces()) continue;
+        const std::string failed = failure(scene, use, scene.media[static_cast<std::size_t>(*medium)]);
         if (failed.empty()) continue;
         lines.push_back(fmt::format("{}: materials.{}: {}; transport \"{}\" takes it for a half-space", scene.file,
-                                    material.name, failed, word_of(scene.render.transport)));
+                                    material.name, failed, word_of(use.transport)));
     }
     return lines;
-}
-
-void warn_about_models(const Scene& scene) {
-    for (const std::string& line : model_remarks(scene)) warn(line);
-}
-
-void warn_about_assumptions(const Scene& scene) {
-    for (const std::string& line : failed_assumptions(scene)) warn(line);
 }
 
 }  // namespace stokes

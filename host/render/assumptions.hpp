@@ -8,10 +8,6 @@
 
 namespace stokes {
 
-// What the chosen transport ignores or makes of the scene's materials, one line each: with `paper`, fluorophores that
-// give off more than they take up, and surfaces whose Fresnel reflection is left out.
-std::vector<std::string> model_remarks(const Scene& scene);
-
 // Where `paper` and `conserving` take a body for a half-space that it does not resemble; at most one line per material,
 // of the body that is farthest from one, at the wavelength of the render's range where light goes farthest. `walk`
 // takes bodies as they are and has none.
@@ -28,9 +24,5 @@ std::vector<std::string> model_remarks(const Scene& scene);
 //
 // Flat sheets are half-spaces: neither thin nor curved.
 std::vector<std::string> failed_assumptions(const Scene& scene);
-
-// The lines of the functions above as warnings on standard error.
-void warn_about_models(const Scene& scene);
-void warn_about_assumptions(const Scene& scene);
 
 }  // namespace stokes

@@ -2,22 +2,17 @@
 
 #include "host/core/overloaded.hpp"
 #include "host/render/pass_spectra.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/subsurface/fresnel.hpp"
-#include "kernels/shared/pass.h"
 
 namespace stokes {
 
 namespace {
 
-std::uint32_t transport_code(Transport transport) {
-    return transport == Transport::paper        ? STOKES_TRANSPORT_PAPER
-           : transport == Transport::conserving ? STOKES_TRANSPORT_CONSERVING
-                                                : STOKES_TRANSPORT_WALK;
-}
-
+// index: of its tables.
 void set_medium(MaterialRecord& record, const Medium& medium, std::uint32_t index, bool fresnel) {
     record.flags |= STOKES_MATERIAL_SUBSURFACE;
-    record.medium = record.transport == STOKES_TRANSPORT_PAPER ? index : 2 * index + (fresnel ? 1 : 0);
+    record.medium = index;
     record.eta = static_cast<float>(medium.eta);
     if (!fresnel) return;
     record.flags |= STOKES_MATERIAL_FRESNEL;
@@ -28,15 +23,19 @@ void set_medium(MaterialRecord& record, const Medium& medium, std::uint32_t inde
 
 bool reflects(const Material& material, Transport transport) {
     const TranslucentMaterial* translucent = as_translucent(material);
-    return translucent != nullptr && translucent->medium && translucent->fresnel && transport != Transport::paper;
+    return translucent != nullptr && translucent->medium && translucent->fresnel &&
+           transport_model(transport).has_fresnel();
 }
 
-std::vector<MaterialRecord> material_records(const Scene& scene, Transport transport) {
+std::vector<MaterialRecord> material_records(const Scene& scene) {
     const SpectraLayout layout(scene);
+    const std::vector<MaterialUse> uses = material_uses(scene);
     std::vector<MaterialRecord> records;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    for (std::size_t u = 0; u < uses.size(); ++u) {
+        const Material& of = scene.materials[static_cast<std::size_t>(uses[u].material)];
+        const TransportModel& model = transport_model(uses[u].transport);
         MaterialRecord record{};
-        record.transport = transport_code(transport);
+        record.transport = model.code();
         record.eta = 1.0f;
         const auto black = [&](const BlackMaterial&) { record.kind = STOKES_BLACK; };
         const auto diffuse = [&](const DiffuseMaterial&) { record.kind = STOKES_DIFFUSE; };
@@ -44,17 +43,18 @@ std::vector<MaterialRecord> material_records(const Scene& scene, Transport trans
             record.kind = STOKES_TRANSLUCENT;
             if (!material.dyes.empty()) record.flags |= STOKES_MATERIAL_FLUORESCENT;
             record.fluorescent_fraction = static_cast<float>(fluorescent_fraction(material.dyes));
-            record.excitation_row = layout.excitation_row[m];
+            record.excitation_row = layout.excitation_row[u];
             record.reradiation_row = record.excitation_row + 1;
-            if (!material.medium) {  // which walks have no part in
-                if (transport == Transport::walk) record.transport = STOKES_TRANSPORT_CONSERVING;
+            if (!material.medium) {
+                record.transport = model.surface_code();
                 return;
             }
+            const auto medium = static_cast<std::uint32_t>(*material.medium);
+            const bool fresnel = reflects(of, uses[u].transport);
             record.sigma_row = layout.sigma_row(*material.medium);
-            set_medium(record, scene.media[static_cast<std::size_t>(*material.medium)],
-                       static_cast<std::uint32_t>(*material.medium), reflects(scene.materials[m], transport));
+            set_medium(record, scene.media[medium], model.table_of(medium, fresnel), fresnel);
         };
-        std::visit(Overloaded{black, diffuse, translucent}, scene.materials[m].kind);
+        std::visit(Overloaded{black, diffuse, translucent}, of.kind);
         records.push_back(record);
     }
     return records;

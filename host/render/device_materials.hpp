@@ -11,7 +11,7 @@ namespace stokes {
 // Its surface reflects specularly, with that transport.
 bool reflects(const Material& material, Transport transport);
 
-// [materials], as that transport has them.
-std::vector<MaterialRecord> material_records(const Scene& scene, Transport transport);
+// By index of material_uses().
+std::vector<MaterialRecord> material_records(const Scene& scene);
 
 }  // namespace stokes

@@ -7,6 +7,7 @@
 #include "host/render/device_materials.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/radius.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/scene/mesh/mesh_topology.hpp"
 
 namespace stokes {
@@ -18,7 +19,9 @@ constexpr double offset_share = 4e-6;
 
 std::vector<std::uint32_t> body_kinds(const Scene& scene) {
     std::vector<std::uint32_t> kinds(static_cast<std::size_t>(std::max(scene.body_count, 1)), STOKES_BODY_CLOSED);
-    if (scene.render.transport != Transport::walk) return kinds;
+    const std::vector<MaterialUse> uses = material_uses(scene);
+    const auto walks = [](const MaterialUse& use) { return use.transport == Transport::walk; };
+    if (std::none_of(uses.begin(), uses.end(), walks)) return kinds;
     const std::vector<BodyKind> walkable = check_walkable(scene);
     for (std::size_t body = 0; body < walkable.size(); ++body)
         if (walkable[body] == BodyKind::flat) kinds[body] = STOKES_BODY_FLAT;
@@ -45,15 +48,17 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     const std::vector<Triangle> all = scene_triangles(scene);
     std::vector<std::uint32_t> first_triangle{0};
     std::vector<ShapeRecord> shape_records;
+    const std::vector<std::uint32_t> uses = uses_of_shapes(scene);
     for (const Shape& shape : scene.shapes) {
         first_triangle.push_back(first_triangle.back() + static_cast<std::uint32_t>(shape.mesh.triangles.size()));
-        shape_records.push_back({static_cast<std::uint32_t>(shape.material),
-                                 shape.light < 0 ? STOKES_NONE : static_cast<std::uint32_t>(shape.light)});
+        shape_records.push_back(
+            {uses[shape_records.size()], shape.light < 0 ? STOKES_NONE : static_cast<std::uint32_t>(shape.light)});
     }
     rays = RayScene(device, all);
     triangles = Buffer<Triangle>(device, "triangles", all);
     shapes = Buffer<ShapeRecord>(device, "shapes", shape_records);
-    materials = Buffer<MaterialRecord>(device, "materials", material_records(scene, scene.render.transport));
+    const std::vector<MaterialRecord> records = material_records(scene);
+    materials = Buffer<MaterialRecord>(device, "materials", records);
     textures = upload_textures(device, scene);
 
     light_probability = light_probabilities(scene);
@@ -62,8 +67,9 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     light_areas = Buffer<float>(device, "light areas", tables_of_lights.areas);
     light_spread = tables_of_lights.spread;
     light_count = static_cast<std::uint32_t>(scene.lights.size());
-    has_fresnel = std::any_of(scene.materials.begin(), scene.materials.end(),
-                              [&](const Material& material) { return reflects(material, scene.render.transport); });
+    has_fresnel = std::any_of(records.begin(), records.end(), [](const MaterialRecord& record) {
+        return (record.flags & STOKES_MATERIAL_FRESNEL) != 0;
+    });
     bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));
 
     const SceneExtent extent = scene_extent(scene);

@@ -1,11 +1,13 @@
 #include "host/render/device_textures.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
 
 #include "host/core/error.hpp"
 #include "host/render/pass_spectra.hpp"
+#include "host/render/transport/transport_model.hpp"
 
 namespace stokes {
 
@@ -44,7 +46,7 @@ DeviceTextures upload_textures(const Device& device, const Scene& scene) {
         records.push_back({static_cast<std::uint32_t>(picture->width), static_cast<std::uint32_t>(picture->height),
                            first_texel[picture], layout.white_row[m]});
     }
-    if (records.empty()) records.push_back({0, 0, 0, STOKES_NONE});
+    records.resize(std::max<std::size_t>(material_uses(scene).size(), 1), {0, 0, 0, STOKES_NONE});
     std::vector<TriangleUv> uv(1);
     if (!texels.empty())
         uv = triangle_uvs(scene);

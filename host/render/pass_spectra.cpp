@@ -7,12 +7,11 @@
 #include "host/core/error.hpp"
 #include "host/image/colour.hpp"
 #include "host/render/stratified_wavelengths.hpp"
+#include "host/render/transport/transport_model.hpp"
 
 namespace stokes {
 
 namespace {
-
-// Over which the emission is normalised [nm].
 
 Flux16 sampled(const Spectrum& spectrum, const WavelengthSet& set) {
     Flux16 result;
@@ -29,8 +28,8 @@ Flux16 starting(const Spectrum& spectrum, const PassWavelengths& wavelengths, do
 }
 
 // The rows of a material's fluorophores together, from first on: sums of each one's own, by their weights.
-void add_dyes(const TranslucentMaterial& material, const Scene& scene, const PassWavelengths& wavelengths,
-              Flux16* first) {
+void add_dyes(const TranslucentMaterial& material, Transport transport, const Scene& scene,
+              const PassWavelengths& wavelengths, Flux16* first) {
     const std::vector<double> weights = dye_weights(material.dyes);
     for (std::size_t k = 0; k < weights.size(); ++k) {
         const Fluorophore& dye = scene.fluorophores[static_cast<std::size_t>(material.dyes[k].fluorophore)];
@@ -38,7 +37,7 @@ void add_dyes(const TranslucentMaterial& material, const Scene& scene, const Pas
             for (std::size_t i = 0; i < STOKES_WAVELENGTHS; ++i) to.v[i] += weight * row.v[i];
         };
         add(*first, sampled(dye.excitation, wavelengths.set));
-        const auto rows = reradiation_rows(dye, scene.render.transport, wavelengths);
+        const auto rows = reradiation_rows(dye, transport, wavelengths);
         for (std::size_t ex = 0; ex < rows.size(); ++ex) add(first[1 + ex], rows[ex]);
     }
 }
@@ -71,8 +70,11 @@ PassConstants make_constants(const RenderSettings& render, const PassWavelengths
 
 }  // namespace
 
-SpectraLayout::SpectraLayout(const Scene& scene) : row_count(static_cast<std::uint32_t>(scene.materials.size())) {
-    for (const Material& material : scene.materials) {
+SpectraLayout::SpectraLayout(const Scene& scene) {
+    const std::vector<MaterialUse> uses = material_uses(scene);
+    row_count = static_cast<std::uint32_t>(uses.size());
+    for (const MaterialUse& use : uses) {
+        const Material& material = scene.materials[static_cast<std::size_t>(use.material)];
         excitation_row.push_back(row_count);
         if (const auto* translucent = as_translucent(material); translucent != nullptr && !translucent->dyes.empty())
             row_count += 1 + STOKES_WAVELENGTHS;
@@ -130,13 +132,11 @@ std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluor
     const WavelengthSet& set = wavelengths.set;
     std::array<Flux16, STOKES_WAVELENGTHS> rows{};
     const double sum = fluorophore.emission.sum_1nm();
+    const TransportModel& model = transport_model(transport);
     for (std::size_t ex = 0; ex < set.size(); ++ex)
         for (std::size_t em = 0; em < set.size(); ++em) {
             if (set[em] <= set[ex]) continue;
-            const double emitted =
-                transport == Transport::paper
-                    ? fluorophore.conversion * fluorophore.emission.at(set[em])
-                    : fluorophore.quantum_yield * fluorophore.emission.at(set[em]) / sum * set[ex] / set[em];
+            const double emitted = model.reradiated_per_nm(fluorophore, sum, set[ex], set[em]);
             rows[ex].v[em] =
                 static_cast<float>(emitted * fluorophore.excitation.at(set[ex]) * wavelengths.weight_nm(ex, em));
         }
@@ -156,13 +156,14 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
     result.constants = make_constants(scene.render, wavelengths, pass, photons);
     const SpectraLayout layout(scene);
     result.rows.resize(layout.row_count);
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        const Material& material = scene.materials[m];
+    const std::vector<MaterialUse> uses = material_uses(scene);
+    for (std::size_t m = 0; m < uses.size(); ++m) {
+        const Material& material = scene.materials[static_cast<std::size_t>(uses[m].material)];
         if (const DiffuseMaterial* diffuse = as_diffuse(material)) {
             result.rows[m] = sampled(diffuse->reflectance, set);
             if (diffuse->texture) result.rows[layout.white_row[m]] = sampled(diffuse->white, set);
         } else if (const TranslucentMaterial* translucent = as_translucent(material)) {
-            add_dyes(*translucent, scene, wavelengths, &result.rows[layout.excitation_row[m]]);
+            add_dyes(*translucent, uses[m].transport, scene, wavelengths, &result.rows[layout.excitation_row[m]]);
         }
     }
     for (std::size_t m = 0; m < scene.media.size(); ++m) {

@@ -12,12 +12,13 @@
 
 namespace stokes {
 
-// Where rows of the pass's spectra stand: a row is one Flux16. Row i is the reflectance of material i.
+// Where rows of the pass's spectra stand: a row is one Flux16. Row i is the reflectance of the
+// material of index i among material_uses().
 struct SpectraLayout {
     explicit SpectraLayout(const Scene& scene);
     // Of sigma_t [1/mm]; the albedo stands in the next one.
     std::uint32_t sigma_row(int medium) const { return first_sigma_row + 2 * static_cast<std::uint32_t>(medium); }
-    // By material. Of its fluorophores together the excitation, before 16 rows of re-radiation; of its texture the
+    // By that index. Of its fluorophores together the excitation, before 16 rows of re-radiation; of its texture the
     // white reflectance. Void where it has none.
     std::vector<std::uint32_t> excitation_row, white_row;
     std::uint32_t first_sigma_row = 0, row_count = 0;
@@ -49,9 +50,7 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
 std::vector<double> dye_weights(const std::vector<Dye>& dyes);
 
 // Re-radiation matrix at a wavelength set: [ex][em], 0 unless em > ex (Stokes). Flux at ex [W/nm] times it is flux at
-// em [W/nm]. Model `paper`, eq. 1-2: conversion E(ex) F(em) pair weight.
-// The others: quantum yield E(ex) f(em) ex/em pair weight, f the emission as photons per nm, its sum over 300..830 nm
-// one (PHYSICS section 4, without c).
+// em [W/nm]: E(ex) TransportModel::reradiated_per_nm() pair weight.
 std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
                                                         const PassWavelengths& wavelengths);
 // The same where all pairs weigh alike.

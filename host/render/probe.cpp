@@ -10,6 +10,7 @@
 #include "host/render/photon_pass.hpp"
 #include "host/render/probe_scene.hpp"
 #include "host/render/probe_sets.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/subsurface/escape.hpp"
 
 namespace stokes {
@@ -32,7 +33,7 @@ void check(const ProbeMaterial& material, const ProbeSettings& s) {
     expect(s.step_nm >= 1 && s.step_nm <= 50, "a step in [1, 50] nm");
     expect(s.bins >= 2 && s.bins <= 10000, "from 2 to 10000 bins");
     expect(!s.r_max_mm || (*s.r_max_mm >= 1e-9 && *s.r_max_mm <= 1e12), "a largest distance in [1e-9, 1e12] mm");
-    expect(!s.first_collision_only || s.transport == Transport::walk,
+    expect(!s.first_collision_only || transport_model(s.transport).takes_up_again(false),
            "fluorescence at the first collision only with the transport walk; it is what the others do");
 }
 
@@ -126,7 +127,7 @@ ProbeGrid HalfSpaceProbe::Bench::probe_grid(int lambda_ex_nm) const {
     const bool fluoresces = some_dye([&](const Fluorophore& dye) { return dye.excitation.at(lambda_ex_nm) > 0.0; });
     if (fluoresces) std::copy_if(grid_nm.begin(), grid_nm.end(), std::back_inserter(grid.emitting), emits);
 
-    const bool again = fluoresces && settings.transport == Transport::walk && !settings.first_collision_only;
+    const bool again = fluoresces && transport_model(settings.transport).takes_up_again(settings.first_collision_only);
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const bool inert = !again || !emits(lambda) || grid.emitting.empty() || lambda > grid.emitting.back();
         if (lambda != lambda_ex_nm && inert && !std::binary_search(grid.emitting.begin(), grid.emitting.end(), lambda))
@@ -141,7 +142,7 @@ ProbeGrid HalfSpaceProbe::Bench::probe_grid(int lambda_ex_nm) const {
 // From a hundredth of a mean free path to twenty diffusion lengths, but no more than 1000 mean free paths.
 std::vector<double> HalfSpaceProbe::Bench::bin_edges(const ProbeGrid& grid) const {
     double first = 0.01, last = 10.0;  // paper: what its tables cover
-    if (material.medium && settings.transport != Transport::paper) {
+    if (material.medium && transport_model(settings.transport).reaches_any_distance()) {
         const auto sigma_t = [&](int lambda) {
             return material.medium->sigma_s.at(lambda) + material.medium->sigma_a.at(lambda);
         };

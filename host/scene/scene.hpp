@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -152,6 +153,7 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<Shape> shapes;
     int body_count = 0;
+    std::map<int, Transport> body_transports;  // of bodies whose light travels otherwise than the render says
 };
 
 }  // namespace stokes

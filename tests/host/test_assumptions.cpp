@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "host/render/assumptions.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/scene/mesh/mesh.hpp"
 #include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/scene_reader.hpp"
@@ -154,13 +155,13 @@ TEST_CASE("What transport paper makes of a scene is said, and only of paper") {
     scene.materials.push_back(scene.materials[0]);
     scene.materials[1].name = "soap";
     scene.render.transport = Transport::paper;
-    CHECK(model_remarks(scene) ==
+    CHECK(transport_model(scene.render.transport).remarks(scene) ==
           Lines{"s.json: fluorophores.dye: emits up to 1.01 times what it takes up (conversion_per_nm times the "
                 "sum of its "
                 "emission)",
                 "s.json: materials: transport \"paper\" leaves out the Fresnel reflection of \"wax\", \"soap\""});
     for (const Transport other : {Transport::conserving, Transport::walk}) {
         scene.render.transport = other;
-        CHECK(model_remarks(scene).empty());
+        CHECK(transport_model(scene.render.transport).remarks(scene).empty());
     }
 }

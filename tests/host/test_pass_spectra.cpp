@@ -138,7 +138,7 @@ TEST_CASE("the rows of several fluorophores are sums of each one's by its share"
                 };
                 CHECK(of(0) == Approx(0.25 * of(1) + 0.75 * of(2)).epsilon(1e-6));
             }
-        const std::vector<MaterialRecord> records = material_records(scene, transport);
+        const std::vector<MaterialRecord> records = material_records(scene);
         CHECK(records[0].fluorescent_fraction == 0.4f);
         CHECK(
             (records[0].flags == STOKES_MATERIAL_FLUORESCENT && records[0].excitation_row == layout.excitation_row[0]));

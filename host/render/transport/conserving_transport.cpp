@@ -5,6 +5,7 @@
 
 #include "host/render/device_materials.hpp"
 #include "host/render/transport/green_walk.hpp"
+#include "host/render/transport/transport_model.hpp"
 
 namespace stokes {
 
@@ -45,16 +46,17 @@ void ConservingTransport::reserve_tables(const Device& device, const Scene& scen
     std::vector<TableShape> shapes(std::max<std::size_t>(6 * scene.media.size(), 1), TableShape{});
     std::map<double, GreenTable> universal;
     std::size_t entries = 0, rows = 0;
-    const bool any = scene.render.transport == Transport::conserving;
-    for (std::size_t m = 0; any && m < scene.media.size(); ++m) {
+    const std::vector<MaterialUse> uses = material_uses(scene);
+    for (std::size_t m = 0; m < scene.media.size(); ++m) {
         const Medium& medium = scene.media[m];
         const Extinction sigma_t = extinction_of(medium, scene.render);
         for (const bool fresnel : {false, true}) {
-            const auto owned = [&](const Material& material) {
-                return medium_of(material) == static_cast<int>(m) &&
-                       reflects(material, Transport::conserving) == fresnel;
+            const auto owned = [&](const MaterialUse& use) {
+                const Material& material = scene.materials[static_cast<std::size_t>(use.material)];
+                return use.transport == Transport::conserving && medium_of(material) == static_cast<int>(m) &&
+                       reflects(material, use.transport) == fresnel;
             };
-            if (std::none_of(scene.materials.begin(), scene.materials.end(), owned)) continue;
+            if (std::none_of(uses.begin(), uses.end(), owned)) continue;
             Owner owner{static_cast<int>(m), fresnel ? medium.eta : 1.0, rows, {}};
             if (universal.count(owner.eta) == 0) universal[owner.eta] = green_table_for(device, owner.eta);
             owner.shape = green_medium_shape(universal[owner.eta], sigma_t.least, sigma_t.most, entries);

@@ -1,6 +1,6 @@
 #include "host/render/transport/paper_transport.hpp"
 
-#include "host/render/device_materials.hpp"
+#include "host/render/transport/transport_model.hpp"
 #include "host/subsurface/distance_mixture.hpp"
 #include "host/subsurface/distance_sampler.hpp"
 #include "host/subsurface/paper_transport.hpp"
@@ -14,11 +14,12 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
     to.insert(to.end(), more.begin(), more.end());
 }
 
-// By index of Scene::media: some material has it below its surface.
+// By index of Scene::media: some material has it below its surface, in a body of this transport.
 std::vector<bool> needed_media(const Scene& scene) {
     std::vector<bool> needed(scene.media.size(), false);
-    for (const Material& material : scene.materials)
-        if (const auto medium = medium_of(material)) needed[static_cast<std::size_t>(*medium)] = true;
+    for (const MaterialUse& use : material_uses(scene))
+        if (const auto medium = medium_of(scene.materials[static_cast<std::size_t>(use.material)]))
+            if (use.transport == Transport::paper) needed[static_cast<std::size_t>(*medium)] = true;
     return needed;
 }
 
@@ -28,7 +29,7 @@ MediumSpectra spectra_of(const Medium& medium) {
 
 }  // namespace
 
-PaperTransport::PaperTransport(const Device& device, const Scene& scene, const DeviceScene&)
+PaperTransport::PaperTransport(const Device& device, const Scene& scene)
     : ExitTransport(device, STOKES_TRANSPORT_PAPER),
       device_(device),
       scene_(scene),

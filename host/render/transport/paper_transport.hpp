@@ -12,7 +12,7 @@ namespace stokes {
 class PaperTransport : public ExitTransport {
   public:
     // The scene outlives it.
-    PaperTransport(const Device& device, const Scene& scene, const DeviceScene& on_device);
+    PaperTransport(const Device& device, const Scene& scene);
 
     void prepare(const PassSpectra& spectra) override;
 

@@ -1,9 +1,5 @@
 #include "host/render/transport/subsurface_transport.hpp"
 
-#include "host/render/transport/conserving_transport.hpp"
-#include "host/render/transport/paper_transport.hpp"
-#include "host/render/transport/walk_transport.hpp"
-
 namespace stokes {
 
 PathSampling path_sampling(const RenderSettings& render) {
@@ -59,19 +55,6 @@ Slots SubsurfaceEvent::take_slots(PhotonMap& map, const EventRound& of, std::uin
     map.note_paths(common, of.first_entry, of.count, deposits_each);
     slots.refused = map.advance(deposits);
     return slots;
-}
-
-// Walks store before the exits of light that leaves where it came in.
-std::vector<std::unique_ptr<SubsurfaceTransport>> make_transports(const Device& device, const Scene& scene,
-                                                                  const DeviceScene& on_device) {
-    std::vector<std::unique_ptr<SubsurfaceTransport>> transports;
-    const Transport used = scene.render.transport;
-    if (used == Transport::walk) transports.push_back(std::make_unique<WalkTransport>(device, on_device));
-    if (used == Transport::paper)
-        transports.push_back(std::make_unique<PaperTransport>(device, scene, on_device));
-    else
-        transports.push_back(std::make_unique<ConservingTransport>(device, scene, on_device));
-    return transports;
 }
 
 }  // namespace stokes
