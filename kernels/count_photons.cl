@@ -1,4 +1,5 @@
-// How thickly photons lie about the points that the camera sees: from that, radii of their own (PHYSICS section 1).
+// How thickly photons lie about the points that camera rays meet: points get radii of their own from it (PHYSICS
+// section 1).
 #include "lib/gather.clh"
 #include "lib/inline.clh"
 #include "shared/arguments.h"
@@ -42,8 +43,8 @@ __kernel void count_photons(uint count, uint map, uint level, float enough, SORT
     if (squares > 0.0f) counts[level * count + i] = max(counts[level * count + i], sum * sum / squares);
 }
 
-// Work-items: one per point. Gives points[count] the radius of their pixel: pixels[count], by GatherPoint.pixel. What
-// is seen in a reflection, or of another material than at set-up, keeps that of the pass.
+// Work-items: one per point. Gives points[count] the radius of their pixel: pixels[count], by GatherPoint.pixel. A
+// point that a reflected ray met, or of another material than at set-up, keeps the radius of the pass.
 __kernel void choose_radii(uint count, __global const PixelRadius* pixel_radii, __global GatherPoint* gather_points) {
     const uint i = (uint)get_global_id(0);
     if (i >= count) return;

@@ -10,8 +10,8 @@
 #include "shared/limits.h"
 #include "shared/pass.h"
 
-// Series of trials after a first one that failed. The prisms and sectors have about 4 % less variance with 8, and 6 to
-// 10 % more with 2; none of them takes longer.
+// Series of trials after a first trial that failed. The prisms and sectors have about 4 % less variance with 8, and 6
+// to 10 % more with 2; none of them takes longer.
 #define EVEN_SERIES 4u
 
 // True where a photon could count for the point at this place of its tangent disk: the surface of its body that is met
@@ -55,10 +55,10 @@ FORCE_INLINE bool is_on_surface(BvhScene scene, __global const Triangle* triangl
 // the pass. Multiplies GatherPoint.weight by an estimate of 1/p, p the share of the disk that is on the surface: so the
 // density estimate divides by the area that can hold photons, without bias. How many random places of the disk it takes
 // until one is on the surface has the mean 1/p (a geometric distribution; Booth 2007, "Unbiased Monte Carlo estimation
-// of the reciprocal of an integral"). With low_discrepancy_pixels one place is tried first, even over the passes
-// together with that of the ray in its pixel; where it is not on the surface the mean of EVEN_SERIES such series is
-// added to 1, for 1/p = 1 + (1 - p)/p. Without, there is one series, which is the same. At most
-// STOKES_GATHER_MOST_TRIALS each.
+// of the reciprocal of an integral"). With low_discrepancy_pixels one place is tried first. The place is
+// low-discrepancy over the passes, together with that of the ray in its pixel. Where the place is not on the surface,
+// the mean of EVEN_SERIES such series is added to 1, because 1/p = 1 + (1 - p)/p. Otherwise there is one series, with
+// the same mean. A series has at most STOKES_GATHER_MOST_TRIALS places.
 __kernel void measure_disks(uint count, float radius_mm, __global const PassConstants* pass, RAY_SCENE_ARGUMENTS,
                             __global const Triangle* triangles, __global GatherPoint* gather_points) {
     const uint i = (uint)get_global_id(0);

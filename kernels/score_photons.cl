@@ -10,8 +10,8 @@
 #include "shared/pass.h"
 #include "shared/photon.h"
 
-// A photon is taken as seen where the point that the camera sees in its pixel is nearer than this many of the pixel's
-// widths on the surface, and of its body.
+// A photon counts as visible where the point that the camera ray of its pixel meets is nearer than this many of the
+// pixel's widths on the surface, and of its body.
 #define VISIBLE_WIDTHS 3.0f
 
 // Work-items: count, the events of a round whose deposits stand in slots first_slot + i * exits_each + k, k <
@@ -31,7 +31,7 @@ __kernel void note_paths(uint count, uint exits_each, uint first_entry, uint fir
 //   them, spectra, texture_records, pass (to_x, to_y, to_z).
 // Writes: scores [slots]: the squares that the photon adds to X, Y and Z [(cd/m^2)^2 mm^2], summed over pixels, but for
 //   the square of the radius: a photon of flux f in a disk of area A on which a pixel covers the area a adds f/(pi A)
-//   to A/a pixels. 0 where the camera does not see it.
+//   to A/a pixels. 0 where the photon is not visible.
 __kernel void score_photons(uint slots, uint map, CameraRecord camera, PASS_ARGUMENTS,
                             __global const TextureRecord* texture_records, __global const PhotonHead* map_heads,
                             __global const float16* map_flux, __global const GatherPoint* gather_points,

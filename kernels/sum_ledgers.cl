@@ -1,4 +1,4 @@
-// Last stage of a pass: the paths' accounts, added up.
+// Last stage of a pass's photons: the accounts of the paths are added up.
 #include "lib/inline.clh"
 #include "lib/light_sum.clh"
 #include "shared/limits.h"

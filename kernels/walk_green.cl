@@ -12,7 +12,7 @@
 // with probability R(mu), else the walk is over: what leaves has been scored.
 // A walk that gets deep would take long to return. Deep down diffusion is exact but for terms of order exp(-z): the
 // rest leaves at distance d from the walk's foot with density (h / 2 pi s^3) (1 + kappa s) exp(-kappa s) per area,
-// h the height above z of the surface that diffusion sees, s = sqrt(h^2 + d^2); d is drawn for kappa = 0.
+// h the height above z of the extrapolated surface of diffusion, s = sqrt(h^2 + d^2); d is drawn for kappa = 0.
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/rng.clh"

@@ -30,7 +30,7 @@ std::string comparison_table(const Comparison& comparison);
 // What the colours of the map mean, in one line.
 std::string scale_text(const ErrorMap& map, const std::string& layer);
 
-// The whole as JSON; README.md describes the keys. Numbers that are infinite or undefined are null.
+// The whole as JSON; scenes/COMMANDS.md describes the keys. Numbers that are infinite or undefined are null.
 std::string comparison_json(const Comparison& comparison);
 
 }  // namespace stokes

@@ -12,7 +12,7 @@ namespace stokes {
 // left out.
 std::string probe_table(const ProbeResult& result, const ProbeMaterial& material, const ProbeSettings& settings);
 
-// The whole result as JSON; README.md describes the keys.
+// The whole result as JSON; scenes/COMMANDS.md describes the keys.
 std::string probe_json(const ProbeResult& result, const ProbeMaterial& material, const ProbeSettings& settings);
 
 // Measurements at increasing excitation wavelengths, all with the same grid lambda_nm, as CSV: lambda_ex_nm,

@@ -19,7 +19,7 @@
 
 namespace stokes {
 
-// Sixteen spectral values as kernels see them: a float16.
+// Sixteen spectral values, laid out as the float16 of kernels.
 struct alignas(64) Flux16 {
     float v[16];
 };
@@ -41,8 +41,8 @@ enum class RayShape { avx512, avx2, portable, scalar };
 template <>
 inline const Words words_of<RayShape> = {"avx512", "avx2", "portable", "scalar"};
 
-// By what the device says of itself: whether it is a CPU, and the width of its vectors. x86: whether this program runs
-// on such a processor, of which a CPU device is part.
+// Chooses the shape by what the device says of itself: whether it is a CPU, and the width of its vectors. x86: whether
+// this program runs on such a processor, of which a CPU device is part.
 RayShape choose_ray_shape(const DeviceDescription& device, bool x86);
 RayShape choose_ray_shape(const DeviceDescription& device);
 
@@ -69,7 +69,7 @@ class Device {
     // Waits for all launches.
     void finish() const;
 
-    // Built when first asked for. Errors: cl::Error.
+    // The program of this text, which is built when it is first asked for. Errors: cl::Error.
     cl::Program program(const std::string& source, const std::string& flags) const;
 
     // Directory to read kernels from in place of the embedded text; empty: embedded.
@@ -80,7 +80,7 @@ class Device {
     void set_local_size(std::size_t size) { shared_->local_size = size; }
     std::size_t local_size() const { return shared_->local_size; }
 
-    // How its ray kernels are built; without it, as choose_ray_shape() has it.
+    // Sets how the device's ray kernels are built; choose_ray_shape() says it otherwise.
     void set_ray_shape(RayShape shape) { shared_->ray_shape = shape; }
     RayShape ray_shape() const { return shared_->ray_shape.value_or(choose_ray_shape(description())); }
 
@@ -90,8 +90,8 @@ class Device {
     void reset_stage_times();
     void record(const std::string& kernel_name, const cl::Event& event) const;
 
-    // Asked before every build and launch until it is set again or emptied; once it says true they throw
-    // Interrupted.
+    // Sets a question that every build and launch asks first, until it is set again or emptied. Once its answer is true
+    // they throw Interrupted, so that a long set-up can be ended.
     void set_stop(std::function<bool()> stop) { shared_->stop = std::move(stop); }
     void check_stop() const {
         if (shared_->stop && shared_->stop()) throw Interrupted("interrupted");
@@ -136,7 +136,7 @@ class Allocation {
     bool allocated() const { return owner_ != nullptr; }
     const cl::Buffer& buffer() const { return owner_->buffer; }
     const Device& device() const { return owner_->device; }
-    // Keeps the memory.
+    // The memory's owner, which keeps the memory alive.
     std::shared_ptr<const void> owner() const { return owner_; }
     void write(const void* data, std::size_t bytes, std::size_t offset) const;
     void read(void* data, std::size_t bytes, std::size_t offset) const;

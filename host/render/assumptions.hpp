@@ -16,7 +16,7 @@ std::vector<std::string> model_remarks(const Scene& scene);
 // of the body that is farthest from one, at the wavelength of the render's range where light goes farthest. `walk`
 // takes bodies as they are and has none.
 //
-// Thin: the median thickness (host/scene/mesh_thickness.hpp) is less than the reach of light, the larger of
+// Thin: the median thickness (host/scene/mesh/mesh_thickness.hpp) is less than the reach of light, the larger of
 // - the diffuse length 1/sqrt(3 sigma_a sigma_t), over which diffuse light falls to 1/e;
 // - 3 mean free paths 1/sigma_t, which 5 % of the light passes without a collision.
 // A slab as thick as the diffuse length absorbs tanh(1/2) = 0.46 of what the half-space does.

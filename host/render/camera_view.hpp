@@ -28,7 +28,7 @@ class CameraView {
 
     // Writes rays[ray_count()] for the pass. Asynchronous.
     void make_rays(const Arguments& pass, const Buffer<Ray>& rays) { make_rays(camera_, pass, rays); }
-    // The same through another camera of as many pixels.
+    // Writes the rays of another camera of as many pixels.
     void make_rays(const CameraRecord& camera, const Arguments& pass, const Buffer<Ray>& rays);
 
   private:

@@ -1,4 +1,4 @@
-// Trial passes that find out where the light comes from that the camera sees, and aim the photons there.
+// Trial passes, which find out where the light of the picture starts, and aim the photons there.
 #pragma once
 
 #include "host/device/kernel.hpp"
@@ -16,13 +16,13 @@ class EmissionTrial {
   public:
     EmissionTrial(const Device& device, std::uint32_t photons);
 
-    // Takes in a pass of that many photons that the tracer has traced from these cells, into maps that tracked their
+    // Takes in a pass of that many photons that PhotonPass has traced from these cells, into maps that tracked their
     // paths; common: arguments of the scene and the pass; points: what the camera finds in it, in the order of its
     // rays.
     void add(const EmissionCells& cells, const Arguments& common, const PhotonMaps& maps, const CameraRecord& camera,
              const Buffer<GatherPoint>& points);
 
-    // Of all passes so far.
+    // The samples of all passes so far.
     std::vector<EmissionSample> samples() const;
 
   private:

@@ -1,5 +1,5 @@
-// Light that reaches the camera: emitters seen directly, light that falls straight from the lights onto what is seen,
-// and the density estimate over the photon maps.
+// Light that reaches the camera: that of emitters which camera rays meet, light that falls straight from the lights
+// onto the points which they meet, and the density estimate over the photon maps.
 #pragma once
 
 #include <optional>
@@ -27,21 +27,21 @@ class Gather {
   public:
     Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera);
 
-    // Finds the points that the camera rays see, and adds the light of emitters among them to the surface layer.
+    // Finds the points that the camera rays meet, and adds the light of emitters among them to the surface layer.
     // rays, hits: one per pixel, as CameraView makes and trace_closest_all or trace_reflections find them.
     // Asynchronous.
     void collect_points(const Arguments& common, const Buffer<Ray>& rays, const Buffer<Hit>& hits,
                         const Buffer<FilmValue>& film);
 
-    // Adds the light that falls straight from the lights onto those points that are diffuse to the surface layer: what
-    // photons stored before their first event would bring. Asynchronous.
+    // Adds the light that falls straight from the lights onto diffuse points to the surface layer. This is the light
+    // of the photons that a pass stores at their first event, where it stores them. Asynchronous.
     void add_direct_light(const Arguments& common, const Buffer<FilmValue>& film);
 
     // Raises counts [count_levels][points], 0 to begin with, to the photons of a map that count towards each point
     // within the radius of its hash: kernels/count_photons.cl. Levels in ascending order. Asynchronous.
     void count_photons(std::uint32_t map, std::uint32_t level, const SpatialHash& photons, const Buffer<float>& counts);
 
-    // From now on, the radii that choose_radii gives the points, by pixel: width * height of them.
+    // Sets the radii that choose_radii gives the points from now on, by pixel: width * height of them.
     void set_radii(const std::vector<PixelRadius>& pixels);
 
     // Powers of two: add_map gathers the points whose radius, over that of the pass, is at most one of them and above
@@ -52,7 +52,7 @@ class Gather {
     void choose_radii();
 
     // Weighs the points by how much of their disk lies on the surface, once a pass; radius_mm is that of the pass.
-    // Without it each weighs one, or the exit_scale of its material. Asynchronous.
+    // Without this call each point weighs one, or the exit_scale of its material. Asynchronous.
     void measure_disks(const Arguments& common, float radius_mm);
 
     // Adds the light of one map (STOKES_MAP_*) at the points of one radius class to the film's layer of the same

@@ -16,7 +16,7 @@ struct Balance {
     double absorbed = 0.0;     // by surfaces, media and black; an estimate, which can be below 0 where nothing absorbs
     double stokes_loss = 0.0;  // taken up by fluorophores and not re-emitted
     double escaped = 0.0;      // left the scene
-    double dropped = 0.0;      // cut off: missed exits, full maps, the limit of events
+    double dropped = 0.0;      // cut off: missed exits, the limits of events and of flux
     double roulette = 0.0;     // statistical balance of Russian roulette and random weights, mean zero
     double created = 0.0;      // by power tables above one, and by fluorophores that emit more than they take up
     double stored = 0.0;       // put into the maps; not part of the sum, light is stored at every event

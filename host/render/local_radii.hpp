@@ -16,15 +16,15 @@ inline constexpr std::uint32_t count_levels = 4;
 // Photons that a disk ought to hold, as the first radius gives the middle of the picture.
 inline constexpr float enough_photons = 20.0f;
 
-// Factor of a point whose disks held counts[0..count_levels - 1] photons: the root of that of the disk which would hold
-// enough, PHYSICS section 1. Levels above the first with enough are not read. In [least_radius_factor,
+// Factor of a point whose disks held counts[0..count_levels - 1] photons: the root of the factor of the disk that would
+// hold enough photons, PHYSICS section 1. Levels above the first with enough are not read. In [least_radius_factor,
 // largest_radius_factor].
 inline constexpr float least_radius_factor = 1.0f, largest_radius_factor = 4.0f;
 float radius_factor(const std::vector<float>& counts);
 
-// Of each pixel, y * width + x. points: what the camera's rays saw, one a pixel, in any order; counts
+// The radius of each pixel, y * width + x. points: what the camera rays met, one a pixel, in any order; counts
 // [count_levels][points], by point. Logarithms of factors are averaged over neighbouring pixels on the same surface. A
-// pixel that saw a reflection has its neighbours' radius; 1 where there is nothing to gather.
+// pixel whose ray was reflected has its neighbours' radius; 1 where there is nothing to gather.
 std::vector<PixelRadius> pixel_radii(const std::vector<GatherPoint>& points, const std::vector<float>& counts,
                                      std::uint32_t width, std::uint32_t height);
 

@@ -19,22 +19,23 @@ class PassInputs {
     // All outlive it.
     PassInputs(const Device& device, const Scene& scene, const DeviceScene& on_device);
 
-    // The pass of this index of the scene's render, or one with wavelengths of one's own. What was there before is
-    // replaced.
+    // Brings spectra and cells to the pass of this index of the scene's render, or to a pass of other wavelengths. The
+    // pass before is replaced.
     void prepare(std::uint32_t pass, std::uint32_t photons);
     void prepare(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons);
 
-    // How photons start in the passes that are prepared from now on; without cells anywhere on the lights, at random.
+    // Sets how photons start in the passes that are prepared from now on. Without cells they start anywhere on the
+    // lights, at random.
     void set_emission(EmissionCells cells);
     bool has_cells() const { return !cells_.records().empty(); }
 
-    // From now on until the next prepare(), each photon has this flux at every wavelength [W/nm].
+    // Gives each photon this flux at every wavelength [W/nm], until the next prepare().
     void set_photon_flux(float flux) const;
 
     // Groups PASS_ARGUMENTS and EMISSION_ARGUMENTS, and photon_flux and light_radiance [lights].
     Arguments arguments() const;
 
-    // Of the pass that was prepared.
+    // The spectra and the photons of the pass that was prepared.
     const PassSpectra& spectra() const { return spectra_; }
     std::uint32_t photons() const { return spectra_.constants.photons; }
 

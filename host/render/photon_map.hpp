@@ -26,10 +26,10 @@ class PhotonMap {
 
     void clear() { used_ = 0; }
 
-    // From now on, or no longer, remembers which path each slot belongs to.
+    // Sets whether the map remembers from now on which path each slot belongs to. The aiming of emission asks for it.
     void track_paths(bool on);
-    // The count events whose paths stand from first_entry on in event_lists, which paths has, will store at the next
-    // slots, exits_each each. Nothing where paths are not tracked. Asynchronous.
+    // Notes the paths of the next slots: count events, whose paths stand from first_entry on in event_lists (one of
+    // paths), will store exits_each times each. Does nothing where paths are not tracked. Asynchronous.
     void note_paths(const Arguments& paths, std::uint32_t first_entry, std::uint32_t count, std::uint32_t exits_each);
     const Buffer<std::uint32_t>& paths() const { return paths_; }  // by slot
 

@@ -4,7 +4,7 @@ namespace stokes {
 
 namespace {
 
-// Rounds of events after which the remaining paths are cut and counted. Roulette ends nearly all long before.
+// Rounds of events after which the remaining paths are cut and counted. Roulette ends nearly all paths long before.
 constexpr std::uint32_t round_limit = 1000;
 
 PhotonMaps make_maps(const Device& device, std::uint32_t slots, HashBuilder* builder, SpatialHash* hash) {
@@ -82,7 +82,8 @@ ListCounts PhotonPass::classify(const EventRound& round) {
     return paths_.make_lists(round.count);
 }
 
-// At diffuse surfaces. Photons straight from a light are stored unless shadow rays bring that light to the camera.
+// Stores and reflects the photons at diffuse surfaces. Those straight from a light are not stored where shadow rays
+// bring that light to the camera.
 void PhotonPass::scatter_at_surfaces(const SubsurfaceEvent& event) {
     EventRound round = event.round;
     round.count = event.lists.count[STOKES_LIST_DIFFUSE];

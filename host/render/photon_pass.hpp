@@ -1,5 +1,5 @@
-// The photon half of a pass: from the lights, event by event, into the maps. Renders, their trial passes and the probe
-// all use it.
+// The photon half of a pass: photons go from the lights, event by event, into the maps. Renders, their trial passes and
+// the probe all use this class.
 #pragma once
 
 #include <array>
@@ -28,15 +28,14 @@ class PhotonPass {
     void prepare(std::uint32_t pass, std::uint32_t photons);
     void prepare(const PassWavelengths& wavelengths, std::uint32_t pass, std::uint32_t photons);
 
-    // Follows the photons of the prepared pass to their ends; their deposits are in the maps, and none of passes
-    // before.
+    // Follows the photons of the prepared pass to their ends. The maps then hold the deposits of this pass alone.
     PhotonAccount trace(const PathSampling& sampling);
     PhotonAccount trace() { return trace(sampling_); }
 
-    // Of the scene and the prepared pass.
+    // The arguments of the scene and of the prepared pass.
     Arguments arguments() const;
 
-    // What the scene's settings ask for.
+    // The sampling that the scene's settings ask for.
     const PathSampling& sampling() const { return sampling_; }
     PassInputs& inputs() { return inputs_; }
     const PassInputs& inputs() const { return inputs_; }

@@ -27,7 +27,7 @@ class PhotonPaths {
     // Room for this many paths.
     PhotonPaths(const Device& device, std::uint32_t paths);
 
-    // PATH_ARGUMENTS, and by path hits, points and event_samples; event_lists. They change with end_round() alone.
+    // PATH_ARGUMENTS; hits, points and event_samples, by path; event_lists and entry_lists.
     const Arguments& arguments() const { return arguments_; }
 
     // The paths that are under way, in order: where emission writes them, and what a round goes through.
@@ -37,10 +37,10 @@ class PhotonPaths {
     // arguments(). Waits for the device.
     ListCounts make_lists(std::uint32_t count);
 
-    // The paths that go on are those of the next round.
+    // Makes the paths that go on the list of the next round.
     void end_round();
 
-    // Of all paths, the first count.
+    // Adds up the accounts of the first count paths. Waits for the device.
     PhotonAccount sum_ledgers(std::uint32_t count) const;
 
   private:

@@ -18,13 +18,13 @@ double pass_radius_mm(double first_mm, double alpha, std::uint32_t pass);
 
 // First radius [mm] from how thickly a trial pass's photons lie where the camera looks: the picture is cut into square
 // tiles, and the median over tiles of photons per surface area [1/mm^2] sets the disk that catches twenty of them.
-// points: what the camera's rays see, one a pixel; those in reflections count as the rest of their tile. photons:
-// positions in the maps. 0 when the camera sees no photon.
+// points: what the camera rays meet, one a pixel; those in reflections count as the rest of their tile. photons:
+// positions in the maps. 0 when no photon lies where the camera looks.
 double first_radius_mm(const CameraRecord& camera, const std::vector<GatherPoint>& points,
                        const std::vector<PhotonHead>& photons);
 
-// The same when the camera sees no photon: all photons spread evenly over the scene's surface (or over its bounding
-// sphere, where that is smaller). RunError for a scene without surfaces.
+// The first radius when no photon lies where the camera looks: all photons are taken as uniform over the scene's
+// surface (or over its bounding sphere, where that is smaller). RunError for a scene without surfaces.
 double spread_radius_mm(const Scene& scene, std::int64_t photons);
 
 // The scene's bounding box [mm]; a point at the origin for a scene without shapes.

@@ -22,7 +22,7 @@ constexpr std::uint32_t trial_pass = 0xffffffffu;
 constexpr std::uint32_t least_trials = 4, most_trials = 32;
 constexpr std::uint32_t all_trial_photons = 1u << 20, most_trial_photons = all_trial_photons / least_trials;
 
-// Share of the photons that start evenly spread in the trials' second half, and in the render.
+// Share of the photons that start as with stratified emission in the trials' second half, and in the render.
 constexpr double even_share_of_trials = 0.3, uniform_share = 0.15;
 
 // The partition of the lights is no finer than this, nor than so many photons of a pass to a cell.
@@ -62,14 +62,14 @@ Renderer::Renderer(const Device& device, const Scene& scene)
     set_up_passes();
     device_.finish();
     trials_processor_s_ = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    // Trials have added the emitters that they saw.
+    // The trials have added the emitters that their camera rays met.
     film_.upload(std::vector<FilmValue>(film_.size(), FilmValue{0, 0, 0, 0}));
     device_.reset_stage_times();
 }
 
-// By trial passes. The first radius is that of photons that start at random and are all stored, so that it does not
-// depend on how the scene is sampled. Local radii relate to it, whatever the scene's, but are those of the photons of
-// its passes.
+// Runs the trial passes. The first radius is that of photons that start at random and are all stored, so that it does
+// not depend on how the scene is sampled. Local radii are factors on this radius, also where the scene gives another;
+// they come from photons as the scene samples them.
 void Renderer::set_up_passes() {
     const ResolvedSettings render = resolved(scene_.render);
     const bool local = render.radii == Radii::local;
@@ -96,8 +96,9 @@ void Renderer::set_up_passes() {
     gather_.set_radii(find_local_radii(found_mm));
 }
 
-// Photons have the same flux at every wavelength: a lamp of few wavelengths might be dark at all of those that were
-// drawn. What one photon stores in several places at once counts as one: it is no more light that found its own way.
+// Traces the photons of a trial pass. They have the same flux at every wavelength, because a lamp of few wavelengths
+// might be dark at all of those that were drawn. Each is stored once an event: copies in several places would count as
+// photons that found their own way.
 void Renderer::make_trial_photons(bool as_plain) {
     photon_pass_.prepare(trial_pass, photons_);
     photon_pass_.inputs().set_photon_flux(1.0f);
@@ -111,7 +112,7 @@ void Renderer::make_trial_photons(bool as_plain) {
     photon_pass_.trace(plain);
 }
 
-// The camera sees the whole picture: a crop has its radius.
+// Camera rays go through the whole picture, so that a crop has the radius of the whole.
 double Renderer::find_first_radius() {
     const CameraRecord whole = make_whole_record(scene_.camera, scene_.film.width, scene_.film.height);
     find_visible_points(whole);
@@ -122,8 +123,8 @@ double Renderer::find_first_radius() {
     return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
 }
 
-// By trial passes that leave nothing in the film: what their photons bring to the picture says where more should start.
-// Their wavelengths are drawn by importance, so that few passes see all of the light.
+// Runs trial passes that leave nothing in the film: what their photons bring to the picture says where more should
+// start. Their wavelengths are drawn by importance, so that few passes suffice for all of the light.
 EmissionCells Renderer::aimed_cells() {
     const std::vector<EmittingLight> lights = emitting_lights(scene_, on_device_);
     const RenderSettings& render = scene_.render;
@@ -154,8 +155,8 @@ EmissionCells Renderer::aimed_cells() {
     return EmissionCells::aimed(lights, trial.samples(), uniform_share, cells_of(photons_), photons_);
 }
 
-// From the points of this picture, be it a crop: photons are counted about them, so that a crop has the radii of its
-// part of the whole.
+// Counts the photons about the points of this picture, which may be a crop: so a crop has the radii of its part of the
+// whole.
 std::vector<PixelRadius> Renderer::find_local_radii(double radius_mm) {
     find_visible_points(view_.camera());
     const Buffer<float> counts(device_, "photons about points",
@@ -186,7 +187,7 @@ void Renderer::render_pass(std::uint32_t pass) {
     ++passes_;
 }
 
-// What the camera's rays meet, at the end of all reflections; emitters among it are added to the film.
+// Finds the points that the camera rays meet, at the end of all reflections, and adds emitters among them to the film.
 void Renderer::find_visible_points(const CameraRecord& camera) {
     const Arguments common = photon_pass_.arguments();
     const Arguments rays = Arguments("rays", camera_rays_).add("hits", camera_hits_).add("n", view_.ray_count());
@@ -197,7 +198,7 @@ void Renderer::find_visible_points(const CameraRecord& camera) {
     gather_.collect_points(common, camera_rays_, camera_hits_, film_);
 }
 
-// Adds the photons to the film, map by map: each is sorted for the radii of the points, and summed about them.
+// Adds the photons to the film, map by map: each map is sorted for the radii of the points, and summed about them.
 void Renderer::gather_maps(double radius_mm) {
     const Arguments common = photon_pass_.arguments();
     gather_.choose_radii();

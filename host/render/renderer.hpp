@@ -62,7 +62,7 @@ class Renderer {
     CameraView view_;
     Gather gather_;
     Kernel trace_;              // camera rays, to what they meet first
-    Kernel trace_reflections_;  // and on, where surfaces mirror
+    Kernel trace_reflections_;  // camera rays, on from surfaces that mirror them
     Buffer<Ray> camera_rays_;
     Buffer<Hit> camera_hits_;
     Buffer<FilmValue> film_;

@@ -10,8 +10,8 @@
 //   wavelengths.
 //
 // Over the passes of a render the numbers of sets in 1, 2, .. bands are as near their shares as they can be, and the
-// sets of a kind cover each stratum evenly: the mean over passes settles faster than that of independent ones, and each
-// pass by itself is drawn as if alone.
+// sets of a kind are stratified within each stratum too: the mean over passes settles faster than that of independent
+// ones, and each pass by itself is drawn as if alone.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace stokes {
 
 // How often each wavelength of the render's range should be in a set: 16 in all, at most once each, and a
-// tenth of them spread evenly, so that none is missed. The rest follows the root of a sum of squares, over
+// tenth of them uniform, so that none is missed. The rest follows the root of a sum of squares, over
 // what the picture is made of, each brought to a sum of 1 over wavelengths:
 //   lamp x reflectance x eye, mean over lamps and materials; for each fluorophore that a material has, lamp x
 //   excitation, mean over lamps, three times; and emission x eye. eye: the colour matching functions X, Y, Z,

@@ -1,4 +1,4 @@
-// The camera as kernels see it.
+// The camera's record, which kernels read.
 #ifndef STOKES_SHARED_CAMERA_H
 #define STOKES_SHARED_CAMERA_H
 

@@ -1,4 +1,4 @@
-// What the camera sees, between finding it and gathering its photons.
+// What the camera rays meet, from finding the points to gathering their photons.
 #ifndef STOKES_SHARED_GATHER_H
 #define STOKES_SHARED_GATHER_H
 
@@ -12,21 +12,21 @@
 #define STOKES_GATHER_MIN_COSINE 0.54f
 #define STOKES_GATHER_MAX_HEIGHT 0.25f
 
-// Random places of a disk that are tried at most.
+// The most random places of a disk that measure_disks tries.
 #define STOKES_GATHER_MOST_TRIALS 32u
 
-// The point that a camera ray sees, directly or mirrored by smooth surfaces. Written by collect_points, choose_radii
+// The point that a camera ray meets, directly or mirrored by smooth surfaces. Written by collect_points, choose_radii
 // and measure_disks, read by add_direct_light, gather_radiance and those of the trial passes; one per camera ray.
 typedef struct GatherPoint {
     float x, y, z;          // [mm]
     unsigned int pixel;     // y * width + x
-    float nx, ny, nz;       // geometric normal on the side that is seen, unit length
+    float nx, ny, nz;       // geometric normal on the side that the ray meets, unit length
     unsigned int material;  // index into the MaterialRecord buffer
     unsigned int maps;      // bit STOKES_MAP_*: photons of this map count; 0: nothing to gather
     // Factor on the density estimate: MaterialRecord.exit_scale where the surface reflects, else 1 (collect_points),
     // times 1 / the share of the disk on the surface, in the mean (measure_disks).
     float weight;
-    unsigned int reflected;  // 1: seen in a reflection; 0: the point lies on the pixel's own ray
+    unsigned int reflected;  // 1: the ray was reflected; 0: the point lies on the pixel's own ray
     float luminance;         // of the material's texture there, in [0, 1]; 0 without one
     float radius_factor;     // its radius over that of the pass, > 0: 1 (collect_points), or of its own (choose_radii)
     unsigned int body;       // Triangle.body

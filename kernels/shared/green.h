@@ -12,7 +12,7 @@ typedef struct GreenWalk {
     float eta;              // refractive index relative to the outside, >= 1
     float critical_cosine;  // sqrt(1 - 1/eta^2): less is reflected totally
     float deep;             // beyond this depth the rest of a walk is replaced by diffusion
-    float deep_offset;      // the surface that diffusion sees lies this far outside, [mfp],
+    float deep_offset;      // the extrapolated surface of diffusion lies this far outside, [mfp],
     float deep_spread;      // plus an exponentially distributed distance of this mean [mfp]
     float rho_first;        // lateral distance at the centre of bin 1, > 0
     float bins_per_octave;  // bin i has its centre at rho_first 2^((i - 1) / bins_per_octave)

@@ -234,14 +234,14 @@ TEST_CASE("compare says in one line what it cannot compare", "[compare_command]"
     CHECK(run_stokes("compare " + a + " " + plain + " --layer whole").code == 0);
 }
 
-TEST_CASE("the README names every key of the comparison's JSON", "[compare_command]") {
+TEST_CASE("the guide to commands names every key of the comparison's JSON", "[compare_command]") {
     const Pictures pictures;
     const Outcome run = pictures.compare(" --json --diff " + pictures.folder.file("d.png"));
-    const std::string readme = file_content(source_path("README.md"));
+    const std::string guide = file_content(source_path("scenes/COMMANDS.md"));
     const nlohmann::json json = nlohmann::json::parse(run.out);
     for (const nlohmann::json& object : {json, json["layers"]["whole"], json["diff"]})
         for (const auto& item : object.items()) {
             CAPTURE(item.key());
-            CHECK(readme.find('`' + item.key() + '`') != std::string::npos);
+            CHECK(guide.find('`' + item.key() + '`') != std::string::npos);
         }
 }

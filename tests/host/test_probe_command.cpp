@@ -226,13 +226,13 @@ TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
     CHECK(folder.names() == before);
 }
 
-TEST_CASE("the README names every key of the probe's JSON", "[probe_command]") {
+TEST_CASE("the guide to commands names every key of the probe's JSON", "[probe_command]") {
     const TemporaryFolder folder;
     REQUIRE(run_stokes("probe --sigma-s 1 --sigma-a 1 --json " + folder.file("a.json") + few).code == 0);
-    const std::string readme = file_content(source_path("README.md"));
+    const std::string guide = file_content(source_path("scenes/COMMANDS.md"));
     const nlohmann::json probe = json_of(folder.file("a.json"));
     for (const auto& item : probe.items()) {
         CAPTURE(item.key());
-        CHECK(readme.find('`' + item.key() + '`') != std::string::npos);
+        CHECK(guide.find('`' + item.key() + '`') != std::string::npos);
     }
 }
