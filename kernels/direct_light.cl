@@ -8,6 +8,7 @@
 #include "lib/texture.clh"
 #include "shared/arguments.h"
 #include "shared/gather.h"
+#include "shared/layers.h"
 #include "shared/light.h"
 #include "shared/material.h"
 #include "shared/pass.h"
@@ -64,7 +65,7 @@ FORCE_INLINE uint pick_light(__global const LightRecord* lights, uint light_coun
 // Reads points[count], the scene, lights, light_areas [mm^2, cumulative within a light], emission[lights]: radiance of
 // surface lights [W mm^-2 sr^-1 nm^-1], irradiance across beams [W mm^-2 nm^-1]; spectra (row i: reflectance of
 // material i, without its texture), textures, pass (seed, pass, offset_mm, to_x, to_y, to_z). Adds to
-// film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2], in the surface layer.
+// film[STOKES_LAYER_COUNT][count] (X, Y, Z, 0) [cd/m^2], in the surface layer.
 __kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, __global const Triangle* triangles,
                                __global const ShapeRecord* shapes, LIGHT_ARGUMENTS,
                                __global const float16* light_radiance, __global const TextureRecord* texture_records,
@@ -103,5 +104,5 @@ __kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, 
             sum += factor_where_met(of_scene, l, hit.triangle, hit.t, d, times_picked(lights, light_count, l), to) *
                    film_value(light_radiance[l] * reflected, pass);
     }
-    film[STOKES_MAP_SURFACE * count + point.pixel] += sum;
+    film[STOKES_LAYER_SURFACE * count + point.pixel] += sum;
 }

@@ -10,6 +10,7 @@
 #include "lib/tiles.clh"
 #include "shared/arguments.h"
 #include "shared/camera.h"
+#include "shared/layers.h"
 #include "shared/material.h"
 #include "shared/pass.h"
 #include "shared/photon.h"
@@ -19,7 +20,7 @@
 // light it emits to the film's surface layer.
 // Reads rays, hits [width * height], triangles, shapes, materials, lights, textures of the scene, emitted[lights]
 // [W mm^-2 sr^-1 nm^-1], pass (to_x, to_y, to_z). Writes points[width * height].
-// Adds to film[STOKES_MAP_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
+// Adds to film[STOKES_LAYER_COUNT][width * height] (X, Y, Z, 0) [cd/m^2].
 __kernel void collect_points(CameraRecord camera, __global const PassConstants* pass, SURFACE_ARGUMENTS,
                              LIGHT_ARGUMENTS, __global const float16* light_radiance, TEXTURE_ARGUMENTS,
                              __global const Ray* rays, __global const Hit* hits, __global GatherPoint* gather_points,
@@ -56,7 +57,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
             point.maps = seen.maps;
             point.weight = seen.weight;
             if (shape.light != STOKES_NONE)
-                film[STOKES_MAP_SURFACE * pixels + point.pixel] +=
+                film[STOKES_LAYER_SURFACE * pixels + point.pixel] +=
                     film_value(radiance_of(&lights[shape.light], light_radiance[shape.light]) / seen.share, pass);
         }
     }
@@ -68,7 +69,7 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
 // photons of flux / pi (eq. 6 of Kugita et al.), times the point's weight, for the surface map times the reflectance.
 // Reads points[count], the map in cell order with its hash (hash_photons.cl), spectra (row i: reflectance of
 // material i, without its texture), textures, pass (to_x, to_y, to_z).
-// Adds to film[STOKES_MAP_COUNT][count] (X, Y, Z, 0) [cd/m^2].
+// Adds to film[STOKES_LAYER_COUNT][count] (X, Y, Z, 0) [cd/m^2].
 __kernel void gather_radiance(uint count, uint map, float largest_factor, PASS_ARGUMENTS, SORTED_MAP_ARGUMENTS,
                               __global const TextureRecord* texture_records, __global const GatherPoint* gather_points,
                               __global float4* film) {

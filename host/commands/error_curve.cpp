@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> layers_of_a_render() {
     std::vector<std::string> layers = {""};
-    layers.insert(layers.end(), component_names.begin(), component_names.end());
+    for (const LayerRow& row : layer_rows) layers.emplace_back(row.name);
     return layers;
 }
 

@@ -2,8 +2,8 @@
 #include <sstream>
 
 #include "host/core/embedded.hpp"
-#include "host/device/kernel.hpp"
 #include "host/core/text_input.hpp"
+#include "host/device/kernel.hpp"
 
 namespace stokes {
 

@@ -124,7 +124,7 @@ std::vector<std::string> layers_in_order(const RgbLayers& layers) {
         if (layers.count(name) != 0 && !known) names.push_back(name);
     };
     add("");
-    for (const char* name : component_names) add(name);
+    for (const LayerRow& row : layer_rows) add(row.name);
     for (const auto& [name, rgb] : layers) add(name);
     return names;
 }

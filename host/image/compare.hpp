@@ -38,7 +38,7 @@ LayerError compare_layer(const std::vector<float>& picture, const std::vector<fl
 // picture is the rmse. NaN where a pixel is not finite in one of them.
 std::vector<double> pixel_errors(const std::vector<float>& picture, const std::vector<float>& reference);
 
-// Layers as people call them: "" is "whole". In the order whole, component_names, others by name.
+// Layers as people call them: "" is "whole". In the order whole, layer_rows, others by name.
 std::string shown_layer(const std::string& layer);
 std::vector<std::string> layers_in_order(const RgbLayers& layers);
 

@@ -13,7 +13,7 @@ namespace stokes {
 using Metadata = std::map<std::string, std::variant<std::string, int, double>>;
 
 // Writes float channels, ZIP-compressed: R, G, B (total_rgb) and LAYER.R, LAYER.G, LAYER.B for each name in
-// component_names (component_rgb), with the standard attributes chromaticities (Rec. 709, D65) and
+// layer_rows (layer_rgb), with the standard attributes chromaticities (Rec. 709, D65) and
 // whiteLuminance = 1 cd/m^2, and metadata. Atomic, as write_file_atomically. Throws RunError with path and
 // reason.
 void write_exr(const std::string& path, const FilmImage& film, const Metadata& metadata);

@@ -10,14 +10,14 @@
 namespace stokes {
 
 FilmImage::FilmImage(int width_px, int height_px) : width(width_px), height(height_px) {
-    for (std::vector<float>& component : xyz) component.assign(pixels() * 3, 0.0f);
+    for (std::vector<float>& layer : xyz) layer.assign(pixels() * 3, 0.0f);
 }
 
-std::vector<float> component_rgb(const FilmImage& film, Component component) {
-    const std::vector<float>& xyz = film.xyz[static_cast<std::size_t>(component)];
+std::vector<float> layer_rgb(const FilmImage& film, Layer layer) {
+    const std::vector<float>& xyz = film.xyz[static_cast<std::size_t>(layer)];
     if (xyz.size() != film.pixels() * 3)
-        throw RunError(fmt::format("film of {} x {} pixels has {} values in its {} component", film.width, film.height,
-                                   xyz.size(), component_names[static_cast<std::size_t>(component)]));
+        throw RunError(fmt::format("film of {} x {} pixels has {} values in its layer {}", film.width, film.height,
+                                   xyz.size(), layer_rows[static_cast<std::size_t>(layer)].name));
     std::vector<float> rgb(xyz.size());
     for (std::size_t i = 0; i < xyz.size(); i += 3) {
         const glm::dvec3 colour = rec709_of_xyz({xyz[i], xyz[i + 1], xyz[i + 2]});
@@ -28,8 +28,8 @@ std::vector<float> component_rgb(const FilmImage& film, Component component) {
 
 std::vector<float> total_rgb(const FilmImage& film) {
     std::vector<double> sum(film.pixels() * 3, 0.0);
-    for (std::size_t k = 0; k < component_count; ++k) {
-        const std::vector<float> layer = component_rgb(film, static_cast<Component>(k));
+    for (const LayerRow& row : layer_rows) {
+        const std::vector<float> layer = layer_rgb(film, row.layer);
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += layer[i];
     }
     std::vector<float> total(sum.size());
@@ -40,8 +40,7 @@ std::vector<float> total_rgb(const FilmImage& film) {
 RgbLayers film_layers(const FilmImage& film) {
     RgbLayers layers;
     layers[""] = total_rgb(film);
-    for (std::size_t k = 0; k < component_count; ++k)
-        layers[component_names[k]] = component_rgb(film, static_cast<Component>(k));
+    for (const LayerRow& row : layer_rows) layers[row.name] = layer_rgb(film, row.layer);
     return layers;
 }
 
@@ -49,8 +48,8 @@ std::size_t count_non_finite(const FilmImage& film) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < film.pixels() * 3; i += 3) {
         double sum = 0.0;
-        for (const std::vector<float>& component : film.xyz)
-            for (std::size_t c = 0; c < 3; ++c) sum += static_cast<double>(component[i + c]);
+        for (const std::vector<float>& layer : film.xyz)
+            for (std::size_t c = 0; c < 3; ++c) sum += static_cast<double>(layer[i + c]);
         if (!std::isfinite(sum)) ++count;
     }
     return count;

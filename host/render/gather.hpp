@@ -9,6 +9,7 @@
 #include "host/render/spatial_hash.hpp"
 #include "kernels/shared/camera.h"
 #include "kernels/shared/gather.h"
+#include "kernels/shared/layers.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/pass.h"
 #include "kernels/shared/photon.h"
@@ -21,7 +22,7 @@ struct alignas(16) FilmValue {
     float x, y, z, unused;
 };
 
-// Adds a pass to the film [STOKES_MAP_COUNT][height][width]. common: arguments of the scene and of the pass.
+// Adds a pass to the film [STOKES_LAYER_COUNT][height][width]. common: arguments of the scene and of the pass.
 class Gather {
   public:
     Gather(const Device& device, const RayKernels& kernels, const CameraRecord& camera);

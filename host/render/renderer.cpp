@@ -53,8 +53,7 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       gather_(device, on_device_.rays.kernels, view_.camera()),
       camera_rays_(device, "camera rays", view_.ray_count()),
       camera_hits_(device, "camera hits", view_.ray_count()),
-      film_(device, "film",
-            std::vector<FilmValue>(std::size_t{STOKES_MAP_COUNT} * view_.ray_count(), FilmValue{0, 0, 0, 0})) {
+      film_(device, "film", std::vector<FilmValue>(layer_count * view_.ray_count(), FilmValue{0, 0, 0, 0})) {
     const RayKernels& kernels = on_device_.rays.kernels;
     trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
     if (on_device_.has_fresnel)
@@ -219,7 +218,7 @@ FilmImage Renderer::image() const {
     FilmImage image(scene_.film.width, scene_.film.height);
     const std::vector<FilmValue> sums = film_.download();
     const float share = passes_ > 0 ? 1.0f / static_cast<float>(passes_) : 0.0f;
-    for (std::size_t c = 0; c < component_count; ++c)
+    for (std::size_t c = 0; c < layer_count; ++c)
         for (std::size_t i = 0; i < image.pixels(); ++i) {
             const FilmValue& sum = sums[c * image.pixels() + i];
             image.xyz[c][i * 3] = sum.x * share;

@@ -4,7 +4,7 @@
 
 #include "limits.h"
 
-// The maps, and the film's layers, in this order everywhere.
+// The maps, in this order everywhere.
 #define STOKES_MAP_FLUORESCENCE 0
 #define STOKES_MAP_SINGLE 1
 #define STOKES_MAP_MULTIPLE 2

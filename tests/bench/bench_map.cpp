@@ -120,7 +120,8 @@ class MapBench {
           spectra_(setting.device, "spectra", std::vector<Flux16>{white()}),
           textures_(setting.device, "textures", std::vector<TextureRecord>{{0, 0, 0, STOKES_NONE}}),
           pass_(setting.device, "pass", std::vector<PassConstants>{make_pass()}),
-          film_(setting.device, "film", std::vector<FilmValue>(4 * points_.size(), FilmValue{0, 0, 0, 0})),
+          film_(setting.device, "film",
+                std::vector<FilmValue>(STOKES_LAYER_COUNT * points_.size(), FilmValue{0, 0, 0, 0})),
           gather_(Program(setting.device, "gather_radiance.cl").kernel("gather_radiance")) {}
 
     Json run(const std::string& name) {
@@ -194,7 +195,7 @@ class MapBench {
         result.flux =
             relative(check_sum(flux.data()->v, 16 * std::size_t{n}), check_sum(twin_->flux()->v, 16 * std::size_t{n}));
         const std::vector<FilmValue> film = film_.download();
-        const FilmValue* layer = film.data() + STOKES_MAP_SURFACE * points_.size();
+        const FilmValue* layer = film.data() + STOKES_LAYER_SURFACE * points_.size();
         result.film = relative(check_sum(&layer->x, 4 * points_.size()),
                                check_sum(twin_film + 4 * STOKES_MAP_SURFACE * points_.size(), 4 * points_.size()));
         return result;

@@ -42,11 +42,11 @@ TEST_CASE("render writes the picture, the PNG and the figures", "[command line]"
     const ExrImage image = read_exr(folder.file("a.exr"));
     CHECK(image.width == 24);
     CHECK(image.height == 16);
-    REQUIRE(image.layers.size() == 5);
+    REQUIRE(image.layers.size() == 1 + layer_count);
     double brightest = 0.0;
     for (std::size_t i = 0; i < image.layers.at("").size(); ++i) {
         float sum = 0.0f;
-        for (const char* layer : {"fluorescence", "single", "multiple", "surface"}) sum += image.layers.at(layer)[i];
+        for (const LayerRow& row : layer_rows) sum += image.layers.at(row.name)[i];
         CHECK(sum == Approx(image.layers.at("")[i]).epsilon(1e-5).margin(1e-5));
         brightest = std::max(brightest, static_cast<double>(sum));
     }

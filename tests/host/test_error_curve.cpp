@@ -14,7 +14,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::string names[] = {"whole", "fluorescence", "single", "multiple", "surface"};
+// Of the k-th layer that a curve has.
+std::string name_of(std::size_t k) { return k == 0 ? "whole" : layer_rows[k - 1].name; }
 
 // The same light, Y in cd/m^2 and X = Y = Z, in every layer.
 FilmImage even_film(int width, int height, float luminance) {
@@ -79,12 +80,12 @@ TEST_CASE("each row adds the errors of that moment, and the file is whole after 
         CHECK(table.columns[1] == "seconds");
         CHECK(table.values[0][row] == passes);
         CHECK(table.values[1][row] == 0.5 * passes);
-        REQUIRE(table.columns.size() == 12);
-        for (std::size_t k = 0; k < 5; ++k) {
-            CHECK(table.columns[2 + 2 * k] == "rmse_" + names[k]);
-            CHECK(table.columns[3 + 2 * k] == "relative_rmse_" + names[k]);
+        REQUIRE(table.columns.size() == 4 + 2 * layer_count);
+        for (std::size_t k = 0; k < 1 + layer_count; ++k) {
+            CHECK(table.columns[2 + 2 * k] == "rmse_" + name_of(k));
+            CHECK(table.columns[3 + 2 * k] == "relative_rmse_" + name_of(k));
             const double error = std::abs(values[row] - 10.0);
-            CHECK(table.values[2 + 2 * k][row] == Approx(error * (k == 0 ? 4.0 : 1.0)).epsilon(1e-5));
+            CHECK(table.values[2 + 2 * k][row] == Approx(error * (k == 0 ? double(layer_count) : 1.0)).epsilon(1e-5));
             CHECK(table.values[3 + 2 * k][row] == Approx(0.1 * error).epsilon(1e-5));
         }
     }
@@ -115,7 +116,7 @@ TEST_CASE("a reference that cannot serve is bad input", "[error_curve]") {
     write_exr(file, film, {});
     CHECK(error(2, 3) == file + ": expected 2 x 3 pixels, as the render has, got 3 x 2");
     CHECK(error(3, 2).empty());
-    film.xyz[static_cast<std::size_t>(Component::multiple)][4] = std::numeric_limits<float>::quiet_NaN();
+    film.xyz[static_cast<std::size_t>(Layer::multiple)][4] = std::numeric_limits<float>::quiet_NaN();
     write_exr(file, film, {});
     CHECK(error(3, 2) == file + ": expected finite pixels, got 1 in layer whole that are not");
 }
@@ -133,11 +134,12 @@ TEST_CASE("the curve's last row is what compare says of the picture", "[error_cu
     for (std::size_t row = 1; row < 4; ++row) CHECK(table.values[1][row] > table.values[1][row - 1]);
     const auto layers =
         nlohmann::json::parse(run_stokes("compare --json " + picture + " " + reference.file).out)["layers"];
-    for (std::size_t k = 0; k < 5; ++k) {
-        CAPTURE(names[k]);
+    for (std::size_t k = 0; k < 1 + layer_count; ++k) {
+        CAPTURE(name_of(k));
         CHECK(table.values[2 + 2 * k].back() > 0.0);
-        CHECK(table.values[2 + 2 * k].back() == Approx(layers[names[k]]["rmse"].get<double>()).epsilon(1e-7));
-        CHECK(table.values[3 + 2 * k].back() == Approx(layers[names[k]]["relative_rmse"].get<double>()).epsilon(1e-7));
+        CHECK(table.values[2 + 2 * k].back() == Approx(layers[name_of(k)]["rmse"].get<double>()).epsilon(1e-7));
+        CHECK(table.values[3 + 2 * k].back() ==
+              Approx(layers[name_of(k)]["relative_rmse"].get<double>()).epsilon(1e-7));
     }
     // Measuring takes no part in either.
     const double wall_s = nlohmann::json::parse(file_content(stats))["wall_s"];

@@ -11,7 +11,7 @@ using namespace stokes;
 
 namespace {
 
-void set_xyz(FilmImage& film, std::size_t pixel, const glm::dvec3& xyz, Component component = Component::surface) {
+void set_xyz(FilmImage& film, std::size_t pixel, const glm::dvec3& xyz, Layer component = Layer::surface) {
     for (int c = 0; c < 3; ++c)
         film.xyz[static_cast<std::size_t>(component)][3 * pixel + static_cast<std::size_t>(c)] =
             static_cast<float>(xyz[c]);
@@ -59,10 +59,10 @@ TEST_CASE("colours below the shoulder are encoded as they are") {
 
 TEST_CASE("components add up in the developed picture") {
     FilmImage film(1, 1);
-    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Component::fluorescence);
-    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Component::single);
-    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Component::multiple);
-    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Component::surface);
+    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Layer::fluorescence);
+    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Layer::single);
+    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Layer::multiple);
+    set_xyz(film, 0, xyz_of_rec709({0.1, 0.1, 0.1}), Layer::surface);
     CHECK(byte_pixel(develop(film, 0.0), 0) == glm::ivec3(byte_of(0.4)));
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("a black film is black at exposure 0") {
 TEST_CASE("non-finite and negative pixels become black and only the former are counted") {
     FilmImage film = uniform(glm::dvec3(0.8));
     set_xyz(film, 3, {std::numeric_limits<double>::quiet_NaN(), 1.0, 1.0});
-    set_xyz(film, 4, {1.0, std::numeric_limits<double>::infinity(), 1.0}, Component::single);
+    set_xyz(film, 4, {1.0, std::numeric_limits<double>::infinity(), 1.0}, Layer::single);
     set_xyz(film, 5, {-1.0, -1.0, -1.0});
     CHECK(count_non_finite(film) == 2);
     CHECK(automatic_exposure_ev(film) == Approx(0.0).margin(1e-5));

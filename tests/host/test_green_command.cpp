@@ -3,8 +3,8 @@
 #include "host/subsurface/green_table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/paths.hpp"
-#include "tests/support/temporary_folder.hpp"
 #include "tests/support/run_stokes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace stokes;
 using Catch::Matchers::Contains;

@@ -65,7 +65,7 @@ inline Scene reference_scene(const ReferenceSetting& setting, std::uint32_t seed
     return scene;
 }
 
-using LayerSamples = std::array<std::vector<Sample>, component_count>;  // [layer][reference_values]
+using LayerSamples = std::array<std::vector<Sample>, layer_count>;  // [layer][reference_values]
 
 inline std::vector<double> reference_values_of(const FilmImage& image, std::size_t layer) {
     std::vector<double> values(reference_values, 0.0);
@@ -82,7 +82,7 @@ inline std::vector<double> reference_values_of(const FilmImage& image, std::size
 }
 
 inline void add_values(LayerSamples& samples, const FilmImage& image) {
-    for (std::size_t c = 0; c < component_count; ++c) {
+    for (std::size_t c = 0; c < layer_count; ++c) {
         const std::vector<double> values = reference_values_of(image, c);
         samples[c].resize(values.size());
         for (std::size_t i = 0; i < values.size(); ++i) samples[c][i].add(values[i]);
@@ -90,7 +90,7 @@ inline void add_values(LayerSamples& samples, const FilmImage& image) {
 }
 
 struct Reference {
-    std::array<std::vector<double>, component_count> mean,
+    std::array<std::vector<double>, layer_count> mean,
         standard_error;  // [layer][reference_values], cd/m^2
     double renders = 0.0;
 };
@@ -108,14 +108,14 @@ inline std::string json_numbers(const std::vector<double>& values) {
 
 inline void write_reference(const ReferenceSetting& s, const LayerSamples& samples) {
     std::string layers;
-    for (std::size_t c = 0; c < component_count; ++c) {
+    for (std::size_t c = 0; c < layer_count; ++c) {
         std::vector<double> mean, error;
         for (const Sample& sample : samples[c]) {
             mean.push_back(sample.mean());
             error.push_back(sample.standard_error());
         }
         layers += fmt::format("{}\n    \"{}\": {{\n      \"xyz\": {},\n      \"standard_error\": {}}}",
-                              c == 0 ? "" : ",", component_names[c], json_numbers(mean), json_numbers(error));
+                              c == 0 ? "" : ",", layer_rows[c].name, json_numbers(mean), json_numbers(error));
     }
     write_file_atomically(
         reference_path(s),
@@ -153,8 +153,8 @@ inline Reference read_reference(const ReferenceSetting& s) {
             throw InputError(path + ": made with another " + key + "; scripts/make_references makes it anew");
     Reference reference;
     reference.renders = member(root, "renders").number;
-    for (std::size_t c = 0; c < component_count; ++c) {
-        const JsonValue& layer = member(member(root, "layers"), component_names[c]);
+    for (std::size_t c = 0; c < layer_count; ++c) {
+        const JsonValue& layer = member(member(root, "layers"), layer_rows[c].name);
         for (const JsonValue& v : member(layer, "xyz").items) reference.mean[c].push_back(v.number);
         for (const JsonValue& v : member(layer, "standard_error").items)
             reference.standard_error[c].push_back(v.number);

@@ -87,7 +87,7 @@ std::vector<std::size_t> inside(const std::vector<SeenPoint>& points, const Scen
     return found;
 }
 
-glm::dvec3 mean_of(const FilmImage& image, Component layer, const std::vector<std::size_t>& at) {
+glm::dvec3 mean_of(const FilmImage& image, Layer layer, const std::vector<std::size_t>& at) {
     const std::vector<float>& xyz = image.xyz[static_cast<std::size_t>(layer)];
     glm::dvec3 sum(0.0);
     for (const std::size_t i : at) sum += glm::dvec3(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
@@ -163,7 +163,7 @@ TEST_CASE("the prisms glow in the colours of their quantum dots", "[hue]") {
         CAPTURE(scene.shapes[s].name, pixels.size());
         if (const TranslucentMaterial* translucent = as_translucent(material)) {
             REQUIRE(pixels.size() >= 10);
-            const glm::dvec2 seen = chromaticity(mean_of(image, Component::fluorescence, pixels));
+            const glm::dvec2 seen = chromaticity(mean_of(image, Layer::fluorescence, pixels));
             std::map<double, std::string> by_distance;
             for (const Fluorophore& dots : scene.fluorophores)
                 by_distance[glm::length(seen - chromaticity(xyz_of(dots.emission)))] = dots.name;
@@ -204,7 +204,7 @@ TEST_CASE("white things are violet in the lamp's light and tinted by the prism b
         const bool sphere = name.find("sphere") != std::string::npos;
         const bool dragon = name.find("dragon") != std::string::npos;
         const Fluorophore& below = scene.fluorophores[sphere ? 0 : dragon ? 1 : 2];
-        const glm::dvec2 seen = chromaticity(mean_of(image, Component::surface, lit));
+        const glm::dvec2 seen = chromaticity(mean_of(image, Layer::surface, lit));
         const glm::dvec2 glow = glow_chromaticity(scene, below), along = glow - lamp;
         const double share = glm::dot(seen - lamp, along) / glm::dot(along, along);
         const double aside = glm::length(seen - lamp - share * along);
@@ -215,7 +215,7 @@ TEST_CASE("white things are violet in the lamp's light and tinted by the prism b
         if (sphere) {
             CHECK(dominant_wavelength(seen) > 0.0);
             CHECK(dominant_wavelength(seen) < 460.0);
-            CHECK(mean_of(image, Component::fluorescence, lit) == glm::dvec3(0.0));
+            CHECK(mean_of(image, Layer::fluorescence, lit) == glm::dvec3(0.0));
         }
         ++checked;
     }

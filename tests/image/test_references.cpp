@@ -14,10 +14,10 @@ constexpr std::uint32_t test_seed = 7;  // the references' are 1000 and above
 // larger counts, for a pixel that few rays see at all may have no spread in one render. Student's t with the
 // test's passes less one. factor, swapped: what the negative controls do to the picture.
 std::size_t count_differences(const LayerSamples& samples, const Reference& reference, double factor = 1.0,
-                              std::array<std::size_t, component_count> layers = {0, 1, 2, 3}) {
-    const double level = sidak_level(family_level, component_count * reference_values);
+                              std::array<std::size_t, layer_count> layers = {0, 1, 2, 3}) {
+    const double level = sidak_level(family_level, layer_count * reference_values);
     std::size_t failures = 0;
-    for (std::size_t c = 0; c < component_count; ++c)
+    for (std::size_t c = 0; c < layer_count; ++c)
         for (std::size_t i = 0; i < reference_values; ++i) {
             const Sample& sample = samples[layers[c]][i];
             const double reference_error = reference.standard_error[c][i];
@@ -41,9 +41,9 @@ TEST_CASE("renders of the shipped scenes agree with their references", "[referen
         PassImages images(renderer);
         LayerSamples samples;
         for (std::uint32_t pass = 0; pass < reference_passes; ++pass) add_values(samples, images.next(pass));
-        for (std::size_t c = 0; c < component_count; ++c) {
+        for (std::size_t c = 0; c < layer_count; ++c) {
             const Sample& picture = samples[c][reference_values - 2];
-            UNSCOPED_INFO(component_names[c] << ": mean Y " << picture.mean() << " +- " << picture.standard_error()
+            UNSCOPED_INFO(layer_rows[c].name << ": mean Y " << picture.mean() << " +- " << picture.standard_error()
                                              << ", reference " << reference.mean[c][reference_values - 2] << " +- "
                                              << reference.standard_error[c][reference_values - 2]);
         }

@@ -31,7 +31,7 @@ TEST_CASE("a picture has the same bits for any work-group size", "[reproducible]
     const FilmImage first = rendered(scene, 64, {0, 1});
     const FilmImage second = rendered(scene, 16, {0, 1});
     double sum = 0.0;
-    for (std::size_t c = 0; c < component_count; ++c) {
+    for (std::size_t c = 0; c < layer_count; ++c) {
         CHECK(same_bits(first.xyz[c], second.xyz[c]));
         for (const float v : first.xyz[c]) sum += static_cast<double>(v);
     }
@@ -48,7 +48,7 @@ TEST_CASE("two equal fluorophores with half of the fraction each make the same p
         scene.fluorophores.push_back(scene.fluorophores[0]);
         translucent_of(scene, 1).dyes = {{0, 0.25}, {1, 0.25}};
         const FilmImage two = rendered(scene, 64, {0});
-        for (std::size_t c = 0; c < component_count; ++c) CHECK(same_bits(one.xyz[c], two.xyz[c]));
+        for (std::size_t c = 0; c < layer_count; ++c) CHECK(same_bits(one.xyz[c], two.xyz[c]));
     }
 }
 
@@ -60,7 +60,7 @@ TEST_CASE("a picture with local radii has the same bits for any work-group size,
     const FilmImage first = rendered(scene, 64, {0, 1});
     const FilmImage second = rendered(scene, 16, {0, 1});
     bool different = false;
-    for (std::size_t c = 0; c < component_count; ++c) {
+    for (std::size_t c = 0; c < layer_count; ++c) {
         CHECK(same_bits(first.xyz[c], second.xyz[c]));
         different = different || !same_bits(first.xyz[c], one.xyz[c]);
     }
@@ -74,7 +74,7 @@ TEST_CASE("a picture has the same bits for every shape of the ray kernels", "[re
         for (const RayShape shape : shapes) {
             const FilmImage other = rendered(scene, 64, {0}, shape);
             double sum = 0.0;
-            for (std::size_t c = 0; c < component_count; ++c) {
+            for (std::size_t c = 0; c < layer_count; ++c) {
                 CAPTURE(c, static_cast<int>(shape));
                 CHECK(same_bits(usual.xyz[c], other.xyz[c]));
                 for (const float v : other.xyz[c]) sum += static_cast<double>(v);
@@ -92,7 +92,7 @@ TEST_CASE("a pass does not depend on the passes before it", "[reproducible]") {
     const FilmImage again = rendered(scene, 64, {5});
     const FilmImage other = rendered(scene, 64, {6});
     const FilmImage both = rendered(scene, 64, {6, 5});
-    for (std::size_t c = 0; c < component_count; ++c) {
+    for (std::size_t c = 0; c < layer_count; ++c) {
         CHECK(same_bits(alone.xyz[c], again.xyz[c]));
         for (std::size_t i = 0; i < alone.xyz[c].size(); ++i)
             CHECK(both.xyz[c][i] == Approx(0.5 * (alone.xyz[c][i] + other.xyz[c][i])).margin(1e-12));

@@ -89,7 +89,8 @@ class Bench {
         Flux16 dim = constant_flux(0.0f), white = constant_flux(0.0f);
         dim.v[0] = static_cast<float>(reflectance);
         white.v[0] = 1.0f;
-        const Buffer<FilmValue> film = on_device(std::vector<FilmValue>(4 * points.size(), FilmValue{0, 0, 0, 0}));
+        const Buffer<FilmValue> film =
+            on_device(std::vector<FilmValue>(STOKES_LAYER_COUNT * points.size(), FilmValue{0, 0, 0, 0}));
         rays.kernels.program(test_device(), "direct_light.cl")
             .kernel("add_direct_light")
             .launch(count, Arguments()

@@ -54,7 +54,7 @@ class Bench {
           count_(static_cast<std::uint32_t>(seen.size())),
           gather_(test_device(), {}, camera()),
           hash_(test_device(), "test", static_cast<std::uint32_t>(photons.size())),
-          film_(test_device(), "film", std::vector<FilmValue>(4 * seen.size(), FilmValue{0, 0, 0, 0})),
+          film_(test_device(), "film", std::vector<FilmValue>(STOKES_LAYER_COUNT * seen.size(), FilmValue{0, 0, 0, 0})),
           pass_(test_device(), "pass", std::vector<PassConstants>{pass_constants()}) {
         set_scene(seen);
         set_photons(photons, radius_mm);
@@ -253,7 +253,7 @@ void check_against_all(std::uint32_t photon_count, std::uint32_t point_count, fl
         if (!expected.decided) continue;
         ++decided;
         found += expected.found;
-        const FilmValue& value = film[STOKES_MAP_SURFACE * point_count + i];
+        const FilmValue& value = film[STOKES_LAYER_SURFACE * point_count + i];
         REQUIRE(value.x == Approx(expected.x).epsilon(1e-5));
         REQUIRE(value.y == Approx(expected.y).epsilon(1e-5));
         REQUIRE(value.z == Approx(expected.z).epsilon(1e-5));
@@ -292,7 +292,7 @@ TEST_CASE("points with radii of all classes each agree with the search", "[gathe
         const Expected expected = expected_light(seen[i], photons, static_cast<double>(radius * factors[i]));
         if (!expected.decided) continue;
         ++decided;
-        const FilmValue& value = film[STOKES_MAP_SURFACE * seen.size() + i];
+        const FilmValue& value = film[STOKES_LAYER_SURFACE * seen.size() + i];
         REQUIRE(value.x == Approx(expected.x).epsilon(1e-5));
         REQUIRE(value.y == Approx(expected.y).epsilon(1e-5));
         REQUIRE(value.z == Approx(expected.z).epsilon(1e-5));
@@ -424,7 +424,7 @@ TEST_CASE("the faces of a regular prism treat each other's photons alike at ever
             const bool counts = std::cos(2.0 * M_PI / sides) > STOKES_GATHER_MIN_COSINE;
             CAPTURE(sides);
             for (std::size_t i = 0; i < seen.size(); ++i)
-                REQUIRE((film[STOKES_MAP_SURFACE * seen.size() + i].x > 0.0f) == counts);
+                REQUIRE((film[STOKES_LAYER_SURFACE * seen.size() + i].x > 0.0f) == counts);
         }
 }
 

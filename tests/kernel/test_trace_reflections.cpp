@@ -89,7 +89,8 @@ class Bench {
         camera.position_z = rays[0].oz;
         const Buffer<Ray> ray_buffer(device, "rays", rays);
         const Buffer<Hit> hits(device, "hits", rays.size());
-        const Buffer<FilmValue> film(device, "film", std::vector<FilmValue>(4 * rays.size(), FilmValue{0, 0, 0, 0}));
+        const Buffer<FilmValue> film(device, "film",
+                                     std::vector<FilmValue>(STOKES_LAYER_COUNT * rays.size(), FilmValue{0, 0, 0, 0}));
         const Arguments common = Arguments("pass", pass_buffer).add(scene_);
         const Arguments own =
             Arguments("camera", camera).add("rays", ray_buffer).add("hits", hits).add("n", camera.width);
@@ -100,7 +101,7 @@ class Bench {
         Gather gather(device, rays_.kernels, camera);
         gather.collect_points(common, ray_buffer, hits, film);
         Seen seen{ray_buffer.download(), hits.download(), gather.points().download(), film.download()};
-        seen.emission.erase(seen.emission.begin(), seen.emission.begin() + STOKES_MAP_SURFACE * camera.width);
+        seen.emission.erase(seen.emission.begin(), seen.emission.begin() + STOKES_LAYER_SURFACE * camera.width);
         return seen;
     }
 

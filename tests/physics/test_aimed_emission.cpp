@@ -44,9 +44,9 @@ Scene world(Transport transport) {
 }
 
 struct Blocks {
-    std::array<std::array<std::vector<double>, edge * edge>, component_count> blocks;  // Y, by seed
+    std::array<std::array<std::vector<double>, edge * edge>, layer_count> blocks;  // Y, by seed
     // Y of each layer's pixels over that of the layer: without what the wavelengths of the passes do to all of it.
-    std::array<std::vector<Sample>, component_count> pixels;
+    std::array<std::vector<Sample>, layer_count> pixels;
 };
 
 Blocks rendered(Scene scene, Emission emission, std::uint32_t first_seed) {
@@ -58,7 +58,7 @@ Blocks rendered(Scene scene, Emission emission, std::uint32_t first_seed) {
         Renderer renderer(test_device(), scene);
         for (std::uint32_t pass = 0; pass < passes; ++pass) renderer.render_pass(pass);
         const FilmImage image = renderer.image();
-        for (std::size_t c = 0; c < component_count; ++c) {
+        for (std::size_t c = 0; c < layer_count; ++c) {
             std::array<double, edge * edge> sums{};
             for (std::size_t i = 0; i < image.pixels(); ++i) {
                 const std::size_t x = i % 24 / (24 / edge), y = i / 24 / (24 / edge);
@@ -93,7 +93,7 @@ void check_same(const Blocks& a, const Blocks& b) {
         CHECK(std::abs(difference.mean()) < deviations * difference.standard_error());
         CHECK(difference.standard_error() < most_error * 0.5 * level.mean());
     };
-    for (std::size_t c = 0; c < component_count; ++c) {
+    for (std::size_t c = 0; c < layer_count; ++c) {
         std::vector<double> x(seeds, 0.0), y(seeds, 0.0);
         for (std::size_t k = 0; k < a.blocks[c].size(); ++k) {
             CAPTURE(c, k);
@@ -117,7 +117,7 @@ void check_emission(Transport transport) {
                  aimed = rendered(scene, Emission::aimed, 1);
     check_same(random, even);
     check_same(random, aimed);
-    for (std::size_t layer = 0; layer < component_count; ++layer) {
+    for (std::size_t layer = 0; layer < layer_count; ++layer) {
         CAPTURE(layer);
         CHECK(variance(even, layer) < 0.95 * variance(random, layer));
         CHECK(variance(aimed, layer) < (layer == STOKES_MAP_SURFACE ? 0.45 : 0.75) * variance(random, layer));

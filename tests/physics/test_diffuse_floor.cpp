@@ -37,7 +37,7 @@ Sample brightness(const Scene& scene, const Spectrum& radiance, std::uint32_t pa
     PassImages images(renderer);
     Sample ratio;
     for (std::uint32_t pass = 0; pass < passes; ++pass)
-        ratio.add(mean_xyz(images.next(pass), Component::surface).y / film_xyz(scene, pass, radiance).y);
+        ratio.add(mean_xyz(images.next(pass), Layer::surface).y / film_xyz(scene, pass, radiance).y);
     return ratio;
 }
 
@@ -96,8 +96,8 @@ TEST_CASE("the film is linear in the lamp's power", "[floor]") {
         renderer.render_pass(0);
         images.push_back(renderer.image());
     }
-    const std::vector<float>& one = images[0].xyz[static_cast<std::size_t>(Component::surface)];
-    const std::vector<float>& eight = images[1].xyz[static_cast<std::size_t>(Component::surface)];
+    const std::vector<float>& one = images[0].xyz[static_cast<std::size_t>(Layer::surface)];
+    const std::vector<float>& eight = images[1].xyz[static_cast<std::size_t>(Layer::surface)];
     for (std::size_t i = 0; i < one.size(); ++i) {
         REQUIRE(one[i] > 0.0f);
         // The same photons, each with eight times the flux: rounding alone, 24 bits over some hundred sums.

@@ -81,10 +81,10 @@ TEST_CASE("rays and photons bring the same direct light in the mean", "[direct_l
             CHECK(a.xyz[static_cast<std::size_t>(component)] == b.xyz[static_cast<std::size_t>(component)]);
         for (int i = 0; i <= columns * rows; ++i) {
             const bool whole = i == columns * rows;
-            const glm::dvec3 x = whole ? mean_xyz(a, Component::surface)
-                                       : block_mean(a, 3, i % columns * edge, i / columns * edge, edge);
-            const glm::dvec3 y = whole ? mean_xyz(b, Component::surface)
-                                       : block_mean(b, 3, i % columns * edge, i / columns * edge, edge);
+            const glm::dvec3 x =
+                whole ? mean_xyz(a, Layer::surface) : block_mean(a, 3, i % columns * edge, i / columns * edge, edge);
+            const glm::dvec3 y =
+                whole ? mean_xyz(b, Layer::surface) : block_mean(b, 3, i % columns * edge, i / columns * edge, edge);
             for (int k = 0; k < 3; ++k)
                 differences[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)].add(x[k] - y[k]);
             if (whole) brightness.add(y.y);

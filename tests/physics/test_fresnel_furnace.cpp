@@ -50,9 +50,9 @@ Seen see(const Scene& scene, std::uint32_t passes) {
         const double one = film_xyz(scene, pass, Spectrum::constant(1.0)).y;
         const FilmImage image = images.next(pass);
         double sum = 0.0;
-        for (std::size_t c = 0; c < component_count; ++c) sum += mean_xyz(image, static_cast<Component>(c)).y / one;
+        for (std::size_t c = 0; c < layer_count; ++c) sum += mean_xyz(image, static_cast<Layer>(c)).y / one;
         seen.radiance.add(sum);
-        seen.surface.add(mean_xyz(image, Component::surface).y / one);
+        seen.surface.add(mean_xyz(image, Layer::surface).y / one);
     }
     const Balance power = renderer.book().ledger().power;
     CHECK(std::abs(power.imbalance()) < 1e-4);

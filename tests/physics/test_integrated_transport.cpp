@@ -49,7 +49,7 @@ std::array<double, 16> mean_power(std::uint32_t component, const Medium& medium,
 
 // Light along the paths and per component in the picture, pass by pass.
 struct Passes {
-    std::array<Sample, component_count> luminance;
+    std::array<Sample, layer_count> luminance;
     std::array<Sample, 4> light;  // stored, absorbed, Stokes loss, escaped, as shares of what was emitted
     double radius_mm = 0.0;
 };
@@ -62,8 +62,7 @@ Passes rendered(Scene scene, std::uint32_t seed, std::uint32_t passes) {
     Balance before{};
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         const FilmImage image = images.next(pass);
-        for (std::size_t c = 0; c < component_count; ++c)
-            result.luminance[c].add(mean_xyz(image, static_cast<Component>(c)).y);
+        for (std::size_t c = 0; c < layer_count; ++c) result.luminance[c].add(mean_xyz(image, static_cast<Layer>(c)).y);
         // The ledger is a mean over passes.
         const Balance now = renderer.book().ledger().power;
         const double n = pass + 1.0;
@@ -143,7 +142,7 @@ TEST_CASE("renders with and without tables agree, component by component", "[int
     for (const std::uint32_t seed : {1u, 2u, 3u}) {
         const Passes with = rendered(scene, 2 * seed, passes);
         const Passes without = rendered(without_tables(scene), 2 * seed + 1, passes);
-        for (std::size_t c = 0; c < component_count; ++c) {
+        for (std::size_t c = 0; c < layer_count; ++c) {
             CAPTURE(seed, c, with.luminance[c].mean(), without.luminance[c].mean());
             CHECK(with.luminance[c].mean() > 0.0);
             CHECK(normal_two_sided(deviate(with.luminance[c], without.luminance[c])) > level);

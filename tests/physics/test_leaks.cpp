@@ -116,7 +116,7 @@ TEST_CASE("a sheet close above another does not light it", "[leaks]") {
         scene.camera = camera_above({-4.1, 0.3, 0.0}, 400.0, 0.5);
         scene.lights = {disk_beam({-4.0, 0.3, 0.0}, {0.0, -1.0, 0.0}, 12.0, one)};
         const Seen lit = see(scene, 16);
-        CHECK(mean_xyz(lit.image, Component::surface).y == Approx(lit.radiance).epsilon(0.03));
+        CHECK(mean_xyz(lit.image, Layer::surface).y == Approx(lit.radiance).epsilon(0.03));
     }
 }
 
@@ -162,8 +162,8 @@ TEST_CASE("a translucent slab and its floor keep to their own layers", "[leaks]"
         scene.shapes[1].mesh = box({30.0, 0.5, 30.0}, {0.0, 0.25, 0.0});
         const auto in_layers = [](const FilmImage& image, bool surface) {
             double sum = 0.0;
-            for (std::size_t c = 0; c < component_count; ++c)
-                if ((c == static_cast<std::size_t>(Component::surface)) == surface)
+            for (std::size_t c = 0; c < layer_count; ++c)
+                if ((c == static_cast<std::size_t>(Layer::surface)) == surface)
                     for (const float v : image.xyz[c]) sum += static_cast<double>(v);
             return sum;
         };

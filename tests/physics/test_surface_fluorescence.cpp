@@ -73,10 +73,10 @@ TEST_CASE("a fluorescent plane has radiance K F / pi", "[fluorescence]") {
         const std::array<double, 16> radiance = emitted_radiance(scene, set, broad);
         const glm::dvec3 expected = film_xyz(scene, set, [&](std::size_t i) { return radiance[i]; });
         const FilmImage image = images.next(pass);
-        const glm::dvec3 seen = mean_xyz(image, Component::fluorescence);
+        const glm::dvec3 seen = mean_xyz(image, Layer::fluorescence);
         for (int c = 0; c < 3; ++c)
             if (expected[c] > 0.0) ratio[static_cast<std::size_t>(c)].add(seen[c] / expected[c]);
-        for (const Component none : {Component::single, Component::multiple, Component::surface})
+        for (const Layer none : {Layer::single, Layer::multiple, Layer::surface})
             CHECK(mean_xyz(image, none) == glm::dvec3(0.0));
     }
     for (const Sample& r : ratio) {
@@ -145,7 +145,7 @@ TEST_CASE("a wide picture of a slab holds all the light that leaves it", "[fluor
         for (std::size_t m = 0; m < STOKES_MAP_COUNT; ++m) {
             CAPTURE(m);
             const glm::dvec3 expected = film_xyz(scene, set, [&](std::size_t i) { return sums[m][i]; });
-            const glm::dvec3 seen = mean_xyz(image, static_cast<Component>(m)) * M_PI * edge_mm * edge_mm * 1e-6;
+            const glm::dvec3 seen = mean_xyz(image, static_cast<Layer>(m)) * M_PI * edge_mm * edge_mm * 1e-6;
             for (int c = 0; c < 3; ++c) {
                 CAPTURE(c);
                 if (m == STOKES_MAP_SURFACE)

@@ -62,7 +62,7 @@ TEST_CASE("the squares of a checkered floor have the radiance of their own refle
         PassImages images(renderer);
         Sample ratio;
         for (std::uint32_t pass = 0; pass < 16; ++pass)
-            ratio.add(mean_xyz(images.next(pass), Component::surface).y / film_xyz(scene, pass, radiance).y);
+            ratio.add(mean_xyz(images.next(pass), Layer::surface).y / film_xyz(scene, pass, radiance).y);
         CAPTURE(ratio.mean(), ratio.standard_error());
         CHECK(ratio.standard_error() < 0.01);
         CHECK(std::abs(normal_of_t(ratio.z(1.0), static_cast<double>(ratio.count() - 1))) < 4.5);
@@ -78,7 +78,7 @@ TEST_CASE("between two texels the radiance is the mean of both", "[textured]") {
     PassImages images(renderer);
     Sample ratio;
     for (std::uint32_t pass = 0; pass < 8; ++pass)
-        ratio.add(mean_xyz(images.next(pass), Component::surface).y /
+        ratio.add(mean_xyz(images.next(pass), Layer::surface).y /
                   (film_xyz(scene, pass, black).y + film_xyz(scene, pass, white).y));
     CAPTURE(ratio.mean(), ratio.standard_error());
     CHECK(std::abs(normal_of_t(ratio.z(1.0), static_cast<double>(ratio.count() - 1))) < 4.5);
@@ -126,7 +126,7 @@ TEST_CASE("a furnace papered with an even picture is one of its reflectance", "[
     PassImages images(renderer);
     Sample ratio;
     for (std::uint32_t pass = 0; pass < 8; ++pass)
-        ratio.add(mean_xyz(images.next(pass), Component::surface).y / film_xyz(scene, pass, Spectrum::constant(2.0)).y);
+        ratio.add(mean_xyz(images.next(pass), Layer::surface).y / film_xyz(scene, pass, Spectrum::constant(2.0)).y);
     CAPTURE(ratio.mean(), ratio.standard_error());
     CHECK(ratio.mean() == Approx(1.0).epsilon(0.01));
     CHECK(std::abs(renderer.book().ledger().power.imbalance()) < 1e-4);

@@ -121,8 +121,8 @@ TEST_CASE("the second tile glows in the light of the first's dye, as bright as t
         CAPTURE(static_cast<int>(transport));
         const FilmImage one = seen_second_tile(two_tiles(transport, 0)),
                         two = seen_second_tile(two_tiles(transport, 1));
-        for (std::size_t c = 0; c < component_count; ++c) CHECK(one.xyz[c] == two.xyz[c]);
-        const glm::dvec3 glow = mean_xyz(two, Component::fluorescence);
+        for (std::size_t c = 0; c < layer_count; ++c) CHECK(one.xyz[c] == two.xyz[c]);
+        const glm::dvec3 glow = mean_xyz(two, Layer::fluorescence);
         CHECK(glow.y > 0.0);
         CHECK(glow.y > glow.x);  // green; the red dye's Y is less than half of its X
     }
@@ -135,7 +135,7 @@ TEST_CASE("light of the first tile is seen through the surface of the second") {
     const Scene plain = two_tiles(Transport::conserving, 1), smooth = two_tiles(Transport::conserving, 2);
     const double eta = smooth.media[1].eta, r = (eta - 1.0) / (eta + 1.0);
     const double expected = (1.0 - r * r) / (1.0 - diffuse_reflectance(eta));
-    const double before = mean_xyz(seen_second_tile(plain), Component::fluorescence).y;
-    const double after = mean_xyz(seen_second_tile(smooth), Component::fluorescence).y;
+    const double before = mean_xyz(seen_second_tile(plain), Layer::fluorescence).y;
+    const double after = mean_xyz(seen_second_tile(smooth), Layer::fluorescence).y;
     CHECK(after / before == Approx(expected).epsilon(0.02));
 }

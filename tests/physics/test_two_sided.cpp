@@ -41,7 +41,7 @@ TEST_CASE("a two-sided sheet reflects on the side that is lit, and only there") 
             PassImages images(renderer);
             Sample ratio;
             for (std::uint32_t pass = 0; pass < 12; ++pass)
-                ratio.add(mean_xyz(images.next(pass), Component::surface).y /
+                ratio.add(mean_xyz(images.next(pass), Layer::surface).y /
                           film_xyz(scene, pass, sloping.scaled(reflectance * cosine / M_PI)).y);
             CAPTURE(ratio.mean(), ratio.standard_error());
             if (light != camera) {
@@ -61,7 +61,7 @@ TEST_CASE("the back of a sheet with one side is black") {
     const Scene scene = lit_sheet(-1.0, -1.0, false);
     Renderer renderer(test_device(), scene);
     renderer.render_pass(0);
-    CHECK(mean_xyz(renderer.image(), Component::surface).y == 0.0);
+    CHECK(mean_xyz(renderer.image(), Layer::surface).y == 0.0);
     const Balance power = renderer.book().ledger().power;
     CHECK(power.absorbed == Approx(power.emitted).epsilon(1e-4));
 }
@@ -78,7 +78,7 @@ TEST_CASE("the edge of a two-sided sheet is as bright as its middle, from behind
         Sample ratio;
         PassImages images(renderer);
         for (std::uint32_t pass = 0; pass < 24; ++pass)
-            ratio.add(mean_xyz(images.next(pass), Component::surface).y /
+            ratio.add(mean_xyz(images.next(pass), Layer::surface).y /
                       film_xyz(scene, pass, sloping.scaled(reflectance / std::sqrt(1.09) / M_PI)).y);
         CAPTURE(side, ratio.mean(), ratio.standard_error());
         CHECK(ratio.standard_error() < 0.05);

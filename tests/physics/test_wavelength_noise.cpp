@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t passes = 140;
 
-using Layers = std::array<std::array<Sample, 3>, component_count>;  // X, Y, Z
+using Layers = std::array<std::array<Sample, 3>, layer_count>;  // X, Y, Z
 
 // Means over the picture of each layer, a sample a pass.
 Layers measured(Scene scene, Wavelengths wavelengths) {
@@ -30,8 +30,8 @@ Layers measured(Scene scene, Wavelengths wavelengths) {
     Layers layers;
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         const FilmImage image = images.next(pass);
-        for (std::size_t c = 0; c < component_count; ++c) {
-            const glm::dvec3 xyz = mean_xyz(image, static_cast<Component>(c));
+        for (std::size_t c = 0; c < layer_count; ++c) {
+            const glm::dvec3 xyz = mean_xyz(image, static_cast<Layer>(c));
             for (int k = 0; k < 3; ++k) layers[c][static_cast<std::size_t>(k)].add(xyz[k]);
         }
     }
@@ -40,7 +40,7 @@ Layers measured(Scene scene, Wavelengths wavelengths) {
 
 void compare(const Scene& scene) {
     const Layers uniform = measured(scene, Wavelengths::uniform), importance = measured(scene, Wavelengths::importance);
-    for (std::size_t c = 0; c < component_count; ++c)
+    for (std::size_t c = 0; c < layer_count; ++c)
         for (std::size_t k = 0; k < 3; ++k) {
             const Sample &u = uniform[c][k], &i = importance[c][k];
             const double error = std::hypot(u.standard_error(), i.standard_error());

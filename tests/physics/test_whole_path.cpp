@@ -19,8 +19,8 @@ Scene prisms() {
 // Mean Y of each layer in blocks of 8 x 8 pixels, [layer][block].
 std::vector<double> blocks_of(const FilmImage& image) {
     const int columns = image.width / 8, rows = image.height / 8;
-    std::vector<double> blocks(static_cast<std::size_t>(columns * rows) * component_count, 0.0);
-    for (std::size_t c = 0; c < component_count; ++c)
+    std::vector<double> blocks(static_cast<std::size_t>(columns * rows) * layer_count, 0.0);
+    for (std::size_t c = 0; c < layer_count; ++c)
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x) {
                 const auto block =
@@ -86,7 +86,7 @@ TEST_CASE("whole renders account for all light and all photons", "[whole_path]")
         CHECK(std::abs(ledger.roulette) < 5.0 * ledger.emitted / std::sqrt(static_cast<double>(photons)));
         const FilmImage image = renderer.image();
         CHECK(count_non_finite(image) == 0);
-        for (const Component c : {Component::fluorescence, Component::single, Component::multiple, Component::surface})
+        for (const Layer c : {Layer::fluorescence, Layer::single, Layer::multiple, Layer::surface})
             CHECK(mean_xyz(image, c).y > 0.0);
     }
 }
@@ -141,7 +141,7 @@ TEST_CASE("no light goes through a thin wall", "[whole_path]") {
         for (std::uint32_t pass = 0; pass < 4; ++pass) renderer.render_pass(pass);
         CHECK(std::abs(renderer.book().ledger().power.imbalance()) < 1e-4);
         CHECK(renderer.book().ledger().power.escaped == 0.0);
-        return mean_xyz(renderer.image(), Component::surface).y;
+        return mean_xyz(renderer.image(), Layer::surface).y;
     };
     // The dark side of the wall but for its rim; the floor from 10 to 50 mm; both again in the lit room.
     CHECK(seen({-90.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 40.0) == 0.0);

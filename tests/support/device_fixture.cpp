@@ -1,7 +1,6 @@
 #include "tests/support/device_fixture.hpp"
 
 #include "host/core/text_input.hpp"
-
 #include "tests/support/paths.hpp"
 
 namespace stokes {

@@ -60,7 +60,7 @@ inline glm::dvec3 film_xyz(const Scene& scene, std::uint32_t pass, const Spectru
 }
 
 // Mean XYZ of a layer over the picture.
-inline glm::dvec3 mean_xyz(const FilmImage& image, Component component) {
+inline glm::dvec3 mean_xyz(const FilmImage& image, Layer component) {
     const std::vector<float>& xyz = image.xyz[static_cast<std::size_t>(component)];
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < image.pixels(); ++i) sum += glm::dvec3(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
@@ -77,7 +77,7 @@ class PassImages {
         const FilmImage mean = renderer_.image();
         FilmImage own = mean;
         const double n = renderer_.passes();
-        for (std::size_t c = 0; c < component_count; ++c) {
+        for (std::size_t c = 0; c < layer_count; ++c) {
             sums_[c].resize(mean.xyz[c].size(), 0.0);
             for (std::size_t k = 0; k < mean.xyz[c].size(); ++k) {
                 const double sum = n * static_cast<double>(mean.xyz[c][k]);
@@ -90,7 +90,7 @@ class PassImages {
 
   private:
     Renderer& renderer_;
-    std::array<std::vector<double>, component_count> sums_;
+    std::array<std::vector<double>, layer_count> sums_;
 };
 
 // Student's t with that many degrees of freedom as the normal deviate of the same significance (Wallace
