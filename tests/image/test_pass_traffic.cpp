@@ -17,7 +17,7 @@ Traffic traffic_of(Transport transport, int edge, std::int64_t photons) {
     Scene scene = small_scene(transport);
     scene.film.width = scene.film.height = edge;
     scene.render.photons_per_pass = photons;
-    Device device = Device::open("cpu");
+    const Device& device = test_device();
     Renderer renderer(device, scene);
     renderer.render_pass(0);
     renderer.render_pass(1);

@@ -15,9 +15,9 @@ namespace {
 
 FilmImage rendered(const Scene& scene, std::size_t local_size, std::initializer_list<std::uint32_t> passes,
                    std::optional<RayShape> shape = {}) {
-    Device device = Device::open("cpu");
+    static Device& device = *new Device(Device::open("cpu"));
     device.set_local_size(local_size);
-    if (shape) device.set_ray_shape(*shape);
+    device.set_ray_shape(shape.value_or(choose_ray_shape(device.description())));
     Renderer renderer(device, scene);
     for (const std::uint32_t pass : passes) renderer.render_pass(pass);
     return renderer.image();

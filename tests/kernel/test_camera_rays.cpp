@@ -120,7 +120,7 @@ TEST_CASE("each ray has unit length and goes through its own pixel", "[camera][t
 
 // 64 passes, from a multiple of 64 on: of each division of a pixel into 64 rectangles by halves, each rectangle has a
 // ray. Rays are single precision: within 1e-4 of a pixel.
-TEST_CASE("over passes a pixel's area is covered evenly", "[camera][tiny]") {
+TEST_CASE("over passes a pixel's area is covered evenly", "[camera]") {
     const int width = 9, height = 7;
     for (const std::uint32_t first : {0u, 128u, 0xffffffc0u}) {
         std::vector<std::vector<glm::dvec2>> places;

@@ -151,14 +151,27 @@ std::vector<float> branch_draws(std::uint32_t paths) {
     return draws;
 }
 
-std::uint32_t expected_event(const MaterialRecord& m, float draw, bool branches) {
-    if (m.kind == STOKES_DIFFUSE) return STOKES_EVENT_DIFFUSE;
-    if (m.kind != STOKES_TRANSLUCENT) return STOKES_EVENT_NONE;
-    const bool subsurface = (m.flags & STOKES_MATERIAL_SUBSURFACE) != 0;
-    const bool fluorescent = (m.flags & STOKES_MATERIAL_FLUORESCENT) != 0;
-    if (branches && subsurface && fluorescent && m.fluorescent_fraction > 0.0f) return STOKES_EVENT_BRANCHES;
-    if (draw < m.fluorescent_fraction) return fluorescent ? STOKES_EVENT_FLUORESCENCE : STOKES_EVENT_NONE;
-    return subsurface ? STOKES_EVENT_ELASTIC : STOKES_EVENT_NONE;
+// By material: the event where the draw is below c, where it is not, and where both branches are asked for. Black
+// absorbs, and so does what nobody knows; a fluorophore that has no re-radiation absorbs, as does a translucent surface without a medium what its
+// fluorophore leaves; both branches are there where light may go either way below the surface.
+struct Events {
+    std::uint32_t below, above;
+    bool both = false;
+};
+constexpr Events events_of_material[] = {{STOKES_EVENT_NONE, STOKES_EVENT_NONE},
+                                         {STOKES_EVENT_DIFFUSE, STOKES_EVENT_DIFFUSE},
+                                         {STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_ELASTIC},
+                                         {STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_ELASTIC, true},
+                                         {STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_ELASTIC, true},
+                                         {STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_NONE},
+                                         {STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_NONE},
+                                         {STOKES_EVENT_NONE, STOKES_EVENT_ELASTIC},
+                                         {STOKES_EVENT_NONE, STOKES_EVENT_NONE}};
+
+std::uint32_t expected_event(std::uint32_t material, float draw, bool branches) {
+    const Events& events = events_of_material[material];
+    if (branches && events.both) return STOKES_EVENT_BRANCHES;
+    return draw < materials()[material].fluorescent_fraction ? events.below : events.above;
 }
 
 void check_arrival(const Arrivals& a, const Classified& result, std::size_t entry, const std::vector<float>& draws,
@@ -194,8 +207,7 @@ void check_arrival(const Arrivals& a, const Classified& result, std::size_t entr
     CHECK(glm::length(glm::dvec3(p.nx, p.ny, p.nz) - normal_of(t)) < 1e-5);
     const double facing = glm::dot(direction_of(a.rays[path]), normal_of(t));
     if (std::abs(facing) < 1e-5) return;
-    const std::uint32_t event =
-        facing < 0.0 ? expected_event(materials()[material], draws[path], branches) : STOKES_EVENT_NONE;
+    const std::uint32_t event = facing < 0.0 ? expected_event(material, draws[path], branches) : STOKES_EVENT_NONE;
     CHECK(result.kinds[entry] == event);
     CHECK(after.fate == (event == STOKES_EVENT_NONE ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE));
     CHECK(static_cast<double>(after.absorbed.energy) == Approx(event == STOKES_EVENT_NONE ? total : 0.0).epsilon(1e-6));

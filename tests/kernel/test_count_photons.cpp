@@ -15,19 +15,20 @@ struct Photons {
     std::vector<Flux16> flux;
 };
 
-// Photons of body 2 in the plane z = 0, a grid of this spacing over 40 x 40 mm, four times as thick for x < 0.
-Photons two_densities(float spacing_mm) {
+// Photons of body 2 in the plane z = 0, a grid of this spacing up to that far from the origin in x and y, four times as
+// thick for x < 0.
+Photons two_densities(float spacing_mm, float half_mm = 20.0f) {
     Photons photons;
     const auto fill = [&](float from_x, float to_x, float spacing) {
         for (float x = from_x + 0.5f * spacing; x < to_x; x += spacing)
-            for (float y = -20.0f + 0.5f * spacing; y < 20.0f; y += spacing) {
+            for (float y = -half_mm + 0.5f * spacing; y < half_mm; y += spacing) {
                 photons.heads.push_back({x, y, 0.0f, pack_normal_twin({0.0, 0.0, 1.0}, 2)});
                 photons.flux.push_back({});
                 for (float& v : photons.flux.back().v) v = 0.25f;
             }
     };
-    fill(-20.0f, 0.0f, 0.5f * spacing_mm);
-    fill(0.0f, 20.0f, spacing_mm);
+    fill(-half_mm, 0.0f, 0.5f * spacing_mm);
+    fill(0.0f, half_mm, spacing_mm);
     return photons;
 }
 
@@ -88,8 +89,8 @@ TEST_CASE("photons are counted in each disk up to the first with enough", "[coun
 }
 
 TEST_CASE("what does not light a point is not counted, and unequal photons count as fewer", "[count_photons][tiny]") {
-    Photons photons = two_densities(1.0f);
-    std::vector<GatherPoint> points(4, point_at(10.0f, 0.0f));
+    Photons photons = two_densities(1.0f, 6.0f);
+    std::vector<GatherPoint> points(4, point_at(3.0f, 0.0f));
     points[1].body = 3;
     points[2].nz = -1.0f;
     points[3].z = 5.0f;
@@ -100,8 +101,8 @@ TEST_CASE("what does not light a point is not counted, and unequal photons count
     // One with as much light as all others: (2 n)^2 / (n^2 + n), below 4.
     std::size_t nearest = 0;
     for (std::size_t i = 0; i < photons.heads.size(); ++i)
-        if (std::hypot(photons.heads[i].x - 10.0f, photons.heads[i].y) <
-            std::hypot(photons.heads[nearest].x - 10.0f, photons.heads[nearest].y))
+        if (std::hypot(photons.heads[i].x - 3.0f, photons.heads[i].y) <
+            std::hypot(photons.heads[nearest].x - 3.0f, photons.heads[nearest].y))
             nearest = i;
     const float others = even[0] - 1.0f;
     for (float& v : photons.flux[nearest].v) v *= others;

@@ -91,7 +91,7 @@ TEST_CASE("unscrambled points are those of Sobol', Joe and Kuo", "[low_discrepan
     }
 }
 
-TEST_CASE("2^m scrambled points are a net", "[low_discrepancy][tiny]") {
+TEST_CASE("2^m scrambled points are a net", "[low_discrepancy]") {
     for (const std::uint32_t seed : {0u, 1u, 0x80000000u, 77u})
         for (const std::uint32_t block : {0u, 5u})
             for (int m = 0; m <= 8; ++m) {
@@ -107,7 +107,7 @@ TEST_CASE("2^m scrambled points are a net", "[low_discrepancy][tiny]") {
             }
 }
 
-TEST_CASE("later dimensions are the same point's, and even", "[low_discrepancy][tiny]") {
+TEST_CASE("later dimensions are the same point's, and even", "[low_discrepancy]") {
     for (const std::uint32_t seed : {0u, 9u})
         for (int m = 0; m <= 8; ++m) {
             const std::uint32_t n = 1u << m, first = 3u * n;

@@ -15,6 +15,7 @@ constexpr int pixels = 16;
 // wavelengths.
 Scene ball_over_floor(std::uint32_t seed, Direct direct) {
     Scene scene = empty_scene("convergence");
+    scene.render.emission = Emission::random;  // the expected slopes are those of independent photons
     scene.materials = {diffuse_material(reflectance), Material{}};
     add_shape(scene, "floor", 0, make_rectangle(2000.0, 2000.0));
     add_shape(scene, "lamp", 1, moved(make_sphere(4.0, 64), {0.0, height_mm, 0.0})).light = 0;

@@ -158,7 +158,7 @@ TEST_CASE("a sphere that emits irradiates a floor by the form factor of a sphere
                 const double x = x_mm + edge_mm * ((i + 0.5) / steps - 0.5), z = edge_mm * ((j + 0.5) / steps - 0.5);
                 form += height_mm / std::pow(x * x + z * z + height_mm * height_mm, 1.5) / (4.0 * M_PI * steps * steps);
             }
-        const Sample ratio = brightness(scene, scene.lights[0].flux.scaled(form * 1e6 * reflectance / M_PI), 16);
+        const Sample ratio = brightness(scene, scene.lights[0].flux.scaled(form * 1e6 * reflectance / M_PI), 24);
         CAPTURE(ratio.mean(), ratio.standard_error());
         CHECK(ratio.standard_error() < 0.01);
         CHECK(std::abs(ratio.mean() - 1.0) < 4.5 * ratio.standard_error() + 0.002);

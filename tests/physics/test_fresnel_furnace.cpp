@@ -22,7 +22,8 @@ Scene furnace_with_smooth_material() {
     scene.media = {medium};
     scene.materials.push_back({"smooth", TranslucentMaterial{0, {}, true}});
     scene.render.transport = Transport::conserving;
-    scene.render.photons_per_pass = 400000;
+    scene.render.photons_per_pass = 50000;
+    scene.render.emission = Emission::aimed;
     scene.render.radius_mm = 6.0;
     return scene;
 }
@@ -103,7 +104,7 @@ TEST_CASE("a smooth lossless slab in a furnace of radiance 1 has radiance 1 at a
         add_shape(scene, "slab", 1, make_rectangle(120.0, 120.0));
         look(scene, view.angle_deg, 60.0, view.fov_deg);
         const Seen seen = see(scene, 32);
-        check_mean(seen.radiance, 1.0, 0.005);
+        check_mean(seen.radiance, 1.0, 0.002);
         check_mean(seen.surface, mean_reflectance(scene), 0.01);
     }
 }
@@ -115,7 +116,7 @@ TEST_CASE("a smooth lossless sphere in a furnace of radiance 1 has radiance 1", 
         add_shape(scene, "sphere", 1, moved(make_sphere(40.0, 256), {0.0, -40.0, 0.0}));
         look(scene, angle_deg, 50.0, angle_deg == 0.0 ? 30.0 : 6.0);
         const Seen seen = see(scene, 16);
-        check_mean(seen.radiance, 1.0, 0.015);
+        check_mean(seen.radiance, 1.0, 0.006);
     }
 }
 
