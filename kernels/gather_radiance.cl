@@ -53,12 +53,12 @@ __kernel void collect_points(CameraRecord camera, __global const PassConstants* 
         point.luminance = texture_luminance(textures, shape.material, hit);
         const float cos_in = -(normal.x * rays[i].dx + normal.y * rays[i].dy + normal.z * rays[i].dz);
         if (cos_in > 0.0f) {
-            const SeenSurface seen = seen_surface(&materials[shape.material], min(cos_in, 1.0f));
-            point.maps = seen.maps;
-            point.weight = seen.weight;
+            const VisibleSurface visible = visible_surface(&materials[shape.material], min(cos_in, 1.0f));
+            point.maps = visible.maps;
+            point.weight = visible.weight;
             if (shape.light != STOKES_NONE)
                 film[STOKES_LAYER_SURFACE * pixels + point.pixel] +=
-                    film_value(radiance_of(&lights[shape.light], light_radiance[shape.light]) / seen.share, pass);
+                    film_value(radiance_of(&lights[shape.light], light_radiance[shape.light]) / visible.share, pass);
         }
     }
     gather_points[i] = point;

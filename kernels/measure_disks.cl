@@ -12,7 +12,7 @@
 
 // Series of trials after a first trial that failed. The prisms and sectors have about 4 % less variance with 8, and 6
 // to 10 % more with 2; none of them takes longer.
-#define EVEN_SERIES 4u
+#define LOW_DISCREPANCY_SERIES 4u
 
 // True where a photon could count for the point at this place of its tangent disk: the surface of its body that is met
 // first from above is within the height and the angle of shared/gather.h. Where another body is met before, its own
@@ -57,8 +57,8 @@ FORCE_INLINE bool is_on_surface(BvhScene scene, __global const Triangle* triangl
 // until one is on the surface has the mean 1/p (a geometric distribution; Booth 2007, "Unbiased Monte Carlo estimation
 // of the reciprocal of an integral"). With low_discrepancy_pixels one place is tried first. The place is
 // low-discrepancy over the passes, together with that of the ray in its pixel. Where the place is not on the surface,
-// the mean of EVEN_SERIES such series is added to 1, because 1/p = 1 + (1 - p)/p. Otherwise there is one series, with
-// the same mean. A series has at most STOKES_GATHER_MOST_TRIALS places.
+// the mean of LOW_DISCREPANCY_SERIES such series is added to 1, because 1/p = 1 + (1 - p)/p. Otherwise there is one
+// series, with the same mean. A series has at most STOKES_GATHER_MOST_TRIALS places.
 __kernel void measure_disks(uint count, float radius_mm, __global const PassConstants* pass, RAY_SCENE_ARGUMENTS,
                             __global const Triangle* triangles, __global GatherPoint* gather_points) {
     const uint i = (uint)get_global_id(0);
@@ -72,7 +72,7 @@ __kernel void measure_disks(uint count, float radius_mm, __global const PassCons
     disk.body = point.body;
     tangent_frame(disk.normal, &disk.s, &disk.t);
     if (is_on_surface(scene, triangles, disk, place_on_disk(pass, point.pixel))) return;
-    const uint series = pass->low_discrepancy_pixels != 0u ? EVEN_SERIES : 1u;
+    const uint series = pass->low_discrepancy_pixels != 0u ? LOW_DISCREPANCY_SERIES : 1u;
     uint trials = 0u;
     for (uint k = 0u; k < series; ++k) {
         bool found = false;

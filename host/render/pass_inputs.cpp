@@ -40,9 +40,9 @@ void PassInputs::set_emission(EmissionCells cells) {
 }
 
 void PassInputs::set_photon_flux(float flux) const {
-    Flux16 even;
-    std::fill(std::begin(even.v), std::end(even.v), flux);
-    photon_flux_.upload(std::vector<Flux16>(photon_flux_.size(), even));
+    Flux16 uniform;
+    std::fill(std::begin(uniform.v), std::end(uniform.v), flux);
+    photon_flux_.upload(std::vector<Flux16>(photon_flux_.size(), uniform));
 }
 
 Arguments PassInputs::arguments() const {

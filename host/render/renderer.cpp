@@ -23,7 +23,7 @@ constexpr std::uint32_t least_trials = 4, most_trials = 32;
 constexpr std::uint32_t all_trial_photons = 1u << 20, most_trial_photons = all_trial_photons / least_trials;
 
 // Share of the photons that start as with stratified emission in the trials' second half, and in the render.
-constexpr double even_share_of_trials = 0.3, uniform_share = 0.15;
+constexpr double uniform_share_of_trials = 0.3, uniform_share = 0.15;
 
 // The partition of the lights is no finer than this, nor than so many photons of a pass to a cell.
 constexpr std::uint32_t most_cells = 1024, photons_per_cell = 64;
@@ -143,7 +143,7 @@ EmissionCells Renderer::aimed_cells() {
     for (PhotonMap& map : photon_pass_.maps()) map.track_paths(true);
     for (std::uint32_t i = 0; i < trials; ++i) {
         if (i == trials / 2)
-            cells = EmissionCells::aimed(lights, trial.samples(), even_share_of_trials, trial_cells, photons);
+            cells = EmissionCells::aimed(lights, trial.samples(), uniform_share_of_trials, trial_cells, photons);
         if (i == 0 || i == trials / 2) photon_pass_.inputs().set_emission(cells);
         const std::uint32_t pass = trial_pass - 1 - i;
         photon_pass_.prepare(strata ? strata->draw(render.seed, pass) : pass_wavelengths(render, pass), pass, photons);

@@ -110,9 +110,9 @@ Values wavelength_importance(const Scene& scene) {
     const Range range(scene.render);
     Values expected = squares_of(scene, range);
     for (double& value : expected) value = std::sqrt(value);
-    const double sum = total(expected), even = 1.0 / static_cast<double>(range.size());
+    const double sum = total(expected), uniform = 1.0 / static_cast<double>(range.size());
     for (double& value : expected)
-        value = sum > 0.0 ? (1.0 - uniform_share) * value / sum + uniform_share * even : even;
+        value = sum > 0.0 ? (1.0 - uniform_share) * value / sum + uniform_share * uniform : uniform;
     limit_to_one(expected);
     return expected;
 }
