@@ -11,6 +11,7 @@
 #include "lib/power_table.clh"
 #include "lib/reradiation.clh"
 #include "lib/retrace.clh"
+#include "lib/surface_normal.clh"
 #include "shared/arguments.h"
 #include "shared/material.h"
 #include "shared/photon.h"
@@ -150,9 +151,7 @@ __kernel void place_exits(uint count, __global const Triangle* triangles, __glob
         exits[i].found = 0u;
         return;
     }
-    __global const Triangle* tri = &triangles[hit.triangle];
-    const float3 normal =
-        normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z), (float3)(tri->e2x, tri->e2y, tri->e2z)));
+    const float3 normal = triangle_normal(triangles[hit.triangle]);
     const float3 position =
         (float3)(probes[i].x, probes[i].y, probes[i].z) - hit.t * (float3)(probes[i].nx, probes[i].ny, probes[i].nz);
     exits[i].x = position.x;

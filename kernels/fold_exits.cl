@@ -2,6 +2,7 @@
 #include "lib/bvh.clh"
 #include "lib/inline.clh"
 #include "lib/probe.clh"
+#include "lib/surface_normal.clh"
 #include "shared/arguments.h"
 #include "shared/pass.h"
 #include "shared/path.h"
@@ -9,10 +10,6 @@
 
 // Edges that are gone round at most.
 #define MOST_FOLDS 4
-
-FORCE_INLINE float3 triangle_normal(__global const Triangle* tri) {
-    return normalize(cross((float3)(tri->e1x, tri->e1y, tri->e1z), (float3)(tri->e2x, tri->e2y, tri->e2z)));
-}
 
 // Work-items: count exits, of which those that found no surface are looked after.
 // Reads: probes: their point of the tangent plane; the scene. Writes: exits, found = 1 where there is one.
@@ -39,7 +36,7 @@ __kernel void fold_exits(uint count, __global const PassConstants* pass, RAY_SCE
         const Ray ray = {start.x, start.y, start.z, 0.0f, back.x, back.y, back.z, way};
         const Hit edge = bvh_closest(scene, ray, front);
         if (edge.triangle == STOKES_NONE) return;
-        const float3 face = triangle_normal(&triangles[edge.triangle]);
+        const float3 face = triangle_normal(triangles[edge.triangle]);
         const float3 down = face * dot(normal, face) - normal;
         const float steepness = length(down);
         if (!(steepness > 1e-3f)) return;
@@ -50,7 +47,7 @@ __kernel void fold_exits(uint count, __global const PassConstants* pass, RAY_SCE
         const Hit hit = probe_surface(scene, triangles, probe);
         if (hit.triangle == STOKES_NONE) continue;
         const float3 position = at - hit.t * face;
-        const float3 outward = triangle_normal(&triangles[hit.triangle]);
+        const float3 outward = triangle_normal(triangles[hit.triangle]);
         exits[i].x = position.x;
         exits[i].y = position.y;
         exits[i].z = position.z;

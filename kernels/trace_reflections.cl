@@ -4,6 +4,7 @@
 #include "lib/inline.clh"
 #include "lib/rng.clh"
 #include "lib/surface.clh"
+#include "lib/surface_normal.clh"
 #include "lib/tiles.clh"
 #include "shared/arguments.h"
 #include "shared/camera.h"
@@ -38,9 +39,9 @@ __kernel void trace_reflections(CameraRecord camera, __global const PassConstant
         if (hit.triangle == STOKES_NONE) break;
         const Triangle t = triangles[hit.triangle];
         __global const MaterialRecord* material = &materials[shapes[t.shape].material];
-        if (!has(material, STOKES_MATERIAL_FRESNEL)) break;
+        if (!may_mirror(material)) break;
         const float3 e1 = (float3)(t.e1x, t.e1y, t.e1z), e2 = (float3)(t.e2x, t.e2y, t.e2z);
-        const float3 normal = normalize(cross(e1, e2));
+        const float3 normal = triangle_normal(t);
         const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
         const float cos_in = min(-dot(direction, normal), 1.0f);
         if (!(cos_in > 0.0f)) break;

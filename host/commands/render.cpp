@@ -92,10 +92,10 @@ void render(const RenderOptions& options) {
     check_outputs(outputs, options.scene_file);
     check_keeps(outputs, options.reference_file, "the reference");
     const Scene scene = read_scene(options.scene_file, options.settings);
-    const TransportModel& model = transport_model(scene.render.transport);
-    model.check(scene);  // before the device is opened
+    for (const Transport transport : transports_of(scene)) transport_model(transport).check(scene);
     const std::unique_ptr<ErrorCurve> curve = make_curve(options, scene.film);
-    for (const std::string& line : model.remarks(scene)) warn(line);
+    for (const Transport transport : transports_of(scene))
+        for (const std::string& line : transport_model(transport).remarks(scene)) warn(line);
     for (const std::string& line : failed_assumptions(scene)) warn(line);
     std::signal(SIGINT, catch_signal);
     std::signal(SIGTERM, catch_signal);

@@ -27,6 +27,8 @@ bool reflects(const Material& material, Transport transport) {
            transport_model(transport).has_fresnel();
 }
 
+bool may_mirror(const MaterialRecord& record) { return (record.flags & STOKES_MATERIAL_FRESNEL) != 0; }
+
 std::vector<MaterialRecord> material_records(const Scene& scene) {
     const SpectraLayout layout(scene);
     const std::vector<MaterialUse> uses = material_uses(scene);
@@ -52,6 +54,8 @@ std::vector<MaterialRecord> material_records(const Scene& scene) {
             const auto medium = static_cast<std::uint32_t>(*material.medium);
             const bool fresnel = reflects(of, uses[u].transport);
             record.sigma_row = layout.sigma_row(*material.medium);
+            if (settings_of(scene.render, uses[u].transport).branches == Branches::both)
+                record.flags |= STOKES_MATERIAL_BRANCHES;
             set_medium(record, scene.media[medium], model.table_of(medium, fresnel), fresnel);
         };
         std::visit(Overloaded{black, diffuse, translucent}, of.kind);

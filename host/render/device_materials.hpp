@@ -11,6 +11,9 @@ namespace stokes {
 // Its surface reflects specularly, with that transport.
 bool reflects(const Material& material, Transport transport);
 
+// Its surface may mirror camera rays.
+bool may_mirror(const MaterialRecord& record);
+
 // By index of material_uses().
 std::vector<MaterialRecord> material_records(const Scene& scene);
 

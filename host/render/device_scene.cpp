@@ -19,10 +19,10 @@ constexpr double offset_share = 4e-6;
 
 std::vector<std::uint32_t> body_kinds(const Scene& scene) {
     std::vector<std::uint32_t> kinds(static_cast<std::size_t>(std::max(scene.body_count, 1)), STOKES_BODY_CLOSED);
-    const std::vector<MaterialUse> uses = material_uses(scene);
-    const auto walks = [](const MaterialUse& use) { return use.transport == Transport::walk; };
-    if (std::none_of(uses.begin(), uses.end(), walks)) return kinds;
-    const std::vector<BodyKind> walkable = check_walkable(scene);
+    const auto by_mesh = [&](int body) {
+        return !transport_model(transport_of_body(scene, body)).takes_bodies_for_half_spaces();
+    };
+    const std::vector<BodyKind> walkable = check_walkable(scene, by_mesh);
     for (std::size_t body = 0; body < walkable.size(); ++body)
         if (walkable[body] == BodyKind::flat) kinds[body] = STOKES_BODY_FLAT;
     return kinds;
@@ -67,9 +67,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     light_areas = Buffer<float>(device, "light areas", tables_of_lights.areas);
     light_spread = tables_of_lights.spread;
     light_count = static_cast<std::uint32_t>(scene.lights.size());
-    has_fresnel = std::any_of(records.begin(), records.end(), [](const MaterialRecord& record) {
-        return (record.flags & STOKES_MATERIAL_FRESNEL) != 0;
-    });
+    has_mirrors = std::any_of(records.begin(), records.end(), may_mirror);
     bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));
 
     const SceneExtent extent = scene_extent(scene);

@@ -28,7 +28,7 @@ struct DeviceScene {
     RayScene rays;
     Buffer<LightRecord> lights;
     Buffer<float> light_areas;                     // cumulative area of the triangles of each surface light [mm^2]
-    bool has_fresnel = false;                      // some material reflects specularly
+    bool has_mirrors = false;                      // some material mirrors camera rays
     std::vector<double> light_probability;         // per light
     std::vector<double> light_spread;              // per light, LightTables::spread
     float offset_mm = 0.0f;                        // rays start this far off a surface

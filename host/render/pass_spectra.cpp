@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "host/core/error.hpp"
+#include "host/core/overloaded.hpp"
 #include "host/image/colour.hpp"
 #include "host/render/stratified_wavelengths.hpp"
 #include "host/render/transport/transport_model.hpp"
@@ -159,12 +160,15 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
     const std::vector<MaterialUse> uses = material_uses(scene);
     for (std::size_t m = 0; m < uses.size(); ++m) {
         const Material& material = scene.materials[static_cast<std::size_t>(uses[m].material)];
-        if (const DiffuseMaterial* diffuse = as_diffuse(material)) {
-            result.rows[m] = sampled(diffuse->reflectance, set);
-            if (diffuse->texture) result.rows[layout.white_row[m]] = sampled(diffuse->white, set);
-        } else if (const TranslucentMaterial* translucent = as_translucent(material)) {
-            add_dyes(*translucent, uses[m].transport, scene, wavelengths, &result.rows[layout.excitation_row[m]]);
-        }
+        const auto black = [](const BlackMaterial&) {};
+        const auto diffuse = [&](const DiffuseMaterial& of) {
+            result.rows[m] = sampled(of.reflectance, set);
+            if (of.texture) result.rows[layout.white_row[m]] = sampled(of.white, set);
+        };
+        const auto translucent = [&](const TranslucentMaterial& of) {
+            add_dyes(of, uses[m].transport, scene, wavelengths, &result.rows[layout.excitation_row[m]]);
+        };
+        std::visit(Overloaded{black, diffuse, translucent}, material.kind);
     }
     for (std::size_t m = 0; m < scene.media.size(); ++m) {
         Flux16* sigma_t = &result.rows[layout.sigma_row(static_cast<int>(m))];

@@ -1,5 +1,7 @@
 #include "host/render/photon_pass.hpp"
 
+#include "host/core/error.hpp"
+
 namespace stokes {
 
 namespace {
@@ -18,11 +20,11 @@ PhotonPass::PhotonPass(const Device& device, const Scene& scene, const DeviceSce
                        std::uint32_t first_slots, HashBuilder* builder, SpatialHash* hash)
     : on_device_(on_device),
       inputs_(device, scene, on_device),
-      sampling_(path_sampling(scene.render)),
       paths_(device, photons),
       maps_(make_maps(device, first_slots, builder, hash)),
       exits_(device, on_device.rays.kernels),
       transports_(make_transports(device, scene, on_device)) {
+    sampling_.store_direct = resolved(scene.render).direct == Direct::photons;
     const Program emission(device, "emit_photons.cl");
     emit_ = emission.kernel("emit_photons");
     emit_stratified_ = emission.kernel("emit_stratified");
@@ -55,10 +57,12 @@ PhotonAccount PhotonPass::trace(const PathSampling& sampling) {
         const ListCounts lists = classify(round);
         const SubsurfaceEvent event{round, lists, sampling, common_, maps_, exits_, counts};
         scatter_at_surfaces(event);
+        check_scattered(lists);
         for (const auto& transport : transports_) transport->scatter(event);
         paths_.end_round();
         alive = lists.alive;
     }
+    common_ = {};
     PhotonAccount account = paths_.sum_ledgers(inputs_.photons());
     account.rays += counts.probes;
     account.refused_slots = counts.refused_slots;
@@ -80,6 +84,18 @@ void PhotonPass::trace_rays(std::uint32_t count) const {
 ListCounts PhotonPass::classify(const EventRound& round) {
     classify_.launch(round.count, Arguments("round", round), common_, paths_.list());
     return paths_.make_lists(round.count);
+}
+
+// RunError where paths are in a list that no transport goes through: they would never end.
+void PhotonPass::check_scattered(const ListCounts& lists) const {
+    std::array<bool, STOKES_LIST_COUNT> scattered{};
+    scattered[STOKES_LIST_DIFFUSE] = true;
+    for (const auto& transport : transports_)
+        for (const std::uint32_t event : {STOKES_EVENT_FLUORESCENCE, STOKES_EVENT_ELASTIC, STOKES_EVENT_BRANCHES})
+            if (transport->scatters(event)) scattered[STOKES_LIST_BELOW(transport->code(), event)] = true;
+    for (std::size_t list = 0; list < scattered.size(); ++list)
+        if (lists.count[list] > 0 && !scattered[list])
+            throw RunError("photons below a surface that no transport scatters");
 }
 
 // Stores and reflects the photons at diffuse surfaces. Those straight from a light are not stored where shadow rays

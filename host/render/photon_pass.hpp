@@ -46,6 +46,7 @@ class PhotonPass {
     void emit() const;
     void trace_rays(std::uint32_t count) const;
     ListCounts classify(const EventRound& round);
+    void check_scattered(const ListCounts& lists) const;
     void scatter_at_surfaces(const SubsurfaceEvent& event);
 
     const DeviceScene& on_device_;

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "host/core/overloaded.hpp"
 #include "host/image/colour.hpp"
 
 namespace stokes {
@@ -69,11 +70,13 @@ Values squares_of(const Scene& scene, const Range& range) {
         if (lamps.emplace_back(range.of(light.flux)); !(total(lamps.back()) > 0.0)) lamps.pop_back();
     std::set<int> fluorophores;
     for (const Material& material : scene.materials) {
-        if (const DiffuseMaterial* diffuse = as_diffuse(material))
-            reflectances.push_back(range.of(diffuse->reflectance));
-        if (const TranslucentMaterial* translucent = as_translucent(material))
-            for (const Dye& dye : translucent->dyes)
+        const auto black = [](const BlackMaterial&) {};
+        const auto diffuse = [&](const DiffuseMaterial& of) { reflectances.push_back(range.of(of.reflectance)); };
+        const auto translucent = [&](const TranslucentMaterial& of) {
+            for (const Dye& dye : of.dyes)
                 if (dye.fraction > 0.0) fluorophores.insert(dye.fluorophore);
+        };
+        std::visit(Overloaded{black, diffuse, translucent}, material.kind);
     }
     const double lamp_share = 1.0 / static_cast<double>(lamps.size());
     Values squares(range.size(), 0.0);

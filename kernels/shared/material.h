@@ -13,11 +13,13 @@
 #define STOKES_MATERIAL_SUBSURFACE 1u   // light goes below the surface; else it leaves where it came in
 #define STOKES_MATERIAL_FRESNEL 2u      // the surface reflects, outside and within; only with SUBSURFACE
 #define STOKES_MATERIAL_FLUORESCENT 4u  // there are fluorophores
+#define STOKES_MATERIAL_BRANCHES 8u     // with SUBSURFACE: light may go both ways, by a fluorophore and past it
 
 // MaterialRecord.transport: the models of PHYSICS sections 3, 4 and 5.
 #define STOKES_TRANSPORT_PAPER 0u
 #define STOKES_TRANSPORT_CONSERVING 1u
 #define STOKES_TRANSPORT_WALK 2u
+#define STOKES_TRANSPORT_COUNT 3u
 
 // Written by the host once per scene.
 typedef struct ShapeRecord {
@@ -31,7 +33,8 @@ STOKES_ASSERT_SIZE(ShapeRecord, 8);
 #define STOKES_BODY_FLAT 1u    // a flat sheet, the surface of a half-space
 
 // Written by the host once per scene. A "row" is an index into the pass's spectra: one float16, the value at each
-// of the pass's wavelengths. Row i is the reflectance of material i.
+// of the pass's wavelengths. Row i is the reflectance of material i. There is a record for each material of the scene,
+// and for each further transport that some of its bodies have (material_uses() of the host).
 typedef struct MaterialRecord {
     unsigned int kind;             // STOKES_BLACK, STOKES_DIFFUSE or STOKES_TRANSLUCENT; any other is black
     unsigned int flags;            // STOKES_MATERIAL_*

@@ -3,6 +3,7 @@
 #define STOKES_SHARED_PATH_H
 
 #include "limits.h"
+#include "material.h"
 
 // PathLedger.fate: how a path ended.
 #define STOKES_FATE_ALIVE 0u
@@ -30,7 +31,7 @@
 // FLUORESCENCE, ELASTIC and BRANCHES of each transport model (STOKES_TRANSPORT_*).
 #define STOKES_LIST_DIFFUSE 0u
 #define STOKES_LIST_BELOW(transport, event) (1u + 3u * (transport) + (event)-STOKES_EVENT_FLUORESCENCE)
-#define STOKES_LIST_COUNT 10u
+#define STOKES_LIST_COUNT (1u + 3u * STOKES_TRANSPORT_COUNT)
 // Of a path in no list: it goes on, or has ended.
 #define STOKES_LIST_NONE 254u
 #define STOKES_LIST_ENDED 255u
@@ -130,7 +131,7 @@ typedef struct EventRound {
     unsigned int second_exit;  // retrace_elastic: first of the multiple-scattering exits in the exit buffer
     unsigned int last;         // 1: paths that would go on are cut and counted
     unsigned int exits;        // exits of an event and component, at least 1
-    unsigned int branches;     // 1: the events are STOKES_EVENT_BRANCHES, or translucent ones may become that
+    unsigned int branches;     // 1: the events are STOKES_EVENT_BRANCHES; classify_photons: they may become that
     unsigned int drawn_rows;   // PAPER: first entry of the distance densities that r is drawn from; 0: the tables' own
     unsigned int first_entry;  // of the round's list in the buffer of all lists
     unsigned int pad[3];

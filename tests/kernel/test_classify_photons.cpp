@@ -18,8 +18,10 @@ namespace {
 constexpr std::uint32_t seed = 77;
 
 MaterialRecord translucent(float c, bool subsurface, bool fluorescent) {
-    MaterialRecord record = translucent_record(
-        (subsurface ? STOKES_MATERIAL_SUBSURFACE : 0u) | (fluorescent ? STOKES_MATERIAL_FLUORESCENT : 0u), c, 1.5f);
+    MaterialRecord record =
+        translucent_record((subsurface ? STOKES_MATERIAL_SUBSURFACE | STOKES_MATERIAL_BRANCHES : 0u) |
+                               (fluorescent ? STOKES_MATERIAL_FLUORESCENT : 0u),
+                           c, 1.5f);
     record.excitation_row = 8;
     record.reradiation_row = 9;
     return record;
@@ -152,8 +154,9 @@ std::vector<float> branch_draws(std::uint32_t paths) {
 }
 
 // By material: the event where the draw is below c, where it is not, and where both branches are asked for. Black
-// absorbs, and so does what nobody knows; a fluorophore that has no re-radiation absorbs, as does a translucent surface without a medium what its
-// fluorophore leaves; both branches are there where light may go either way below the surface.
+// absorbs, and so does what nobody knows; a fluorophore that has no re-radiation absorbs, as does a translucent surface
+// without a medium what its fluorophore leaves; both branches are there where light may go either way below the
+// surface.
 struct Events {
     std::uint32_t below, above;
     bool both = false;

@@ -1,4 +1,5 @@
 // Bodies whose light travels by another transport than the render's.
+#include <array>
 #include <cstring>
 
 #include "host/scene/mesh/shapes.hpp"
@@ -27,10 +28,26 @@ Scene two_sheets(Transport transport) {
     return scene;
 }
 
+// Every sampler that the transports have, beside what is drawn evenly over the passes.
+void use_all_samplers(Scene& scene) {
+    scene.render.sampling = Sampling::best;
+    scene.render.emission = Emission::random;
+    scene.render.branches = Branches::both;
+    scene.render.distances = Distances::importance;
+    scene.render.exits = 3;
+}
+
+// No path is left over, and no light, in energy and in photons, to 1e-5.
+void check_account(const PhotonAccount& account) {
+    CHECK(account.fates[STOKES_FATE_ALIVE] == 0);
+    for (const std::array<double, 8>& s : {account.energy, account.photons})
+        CHECK(s[1] + s[2] + s[3] + s[4] + s[5] - s[6] == Approx(s[0]).epsilon(1e-5));
+}
+
 // What leaves one of the bodies, map by map, in the order of its paths.
 std::vector<Flux16> light_of_body(const Scene& scene, std::uint32_t body) {
     PhotonPasses passes(scene);
-    passes.trace(0);
+    check_account(passes.trace(0));
     std::vector<Flux16> light;
     for (std::size_t m = 0; m < 3; ++m) {
         const Deposits deposits = passes.deposits(m);
@@ -47,18 +64,60 @@ bool same(const std::vector<Flux16>& a, const std::vector<Flux16>& b) {
 
 }  // namespace
 
-// A path's random numbers depend on its index and event alone, so that each body does, to the bit, what it does where all
-// have its transport; and the transports differ, so that none stands in for another.
+// A path's random numbers depend on its index and event alone, so that each body does, to the bit, what it does where
+// all have its transport; and the transports differ, so that none stands in for another.
 TEST_CASE("each body has the light of its own transport", "[transport]") {
-    for (const Transport left : {Transport::paper, Transport::conserving, Transport::walk})
-        for (const Transport right : {Transport::paper, Transport::conserving, Transport::walk}) {
-            CAPTURE(word_of(left), word_of(right));
-            Scene mixed = two_sheets(left);
-            mixed.body_transports[1] = right;
-            const std::vector<Flux16> of_left = light_of_body(mixed, 0), of_right = light_of_body(mixed, 1);
-            CHECK(of_left.size() > 100);
-            CHECK(same(of_left, light_of_body(two_sheets(left), 0)));
-            CHECK(same(of_right, light_of_body(two_sheets(right), 1)));
-            if (left != right) CHECK_FALSE(same(of_right, light_of_body(two_sheets(left), 1)));
-        }
+    const auto transports = {Transport::paper, Transport::conserving, Transport::walk};
+    for (const bool all_samplers : {false, true})
+        for (const Transport left : transports)
+            for (const Transport right : transports) {
+                CAPTURE(all_samplers, word_of(left), word_of(right));
+                const auto sheets = [&](Transport transport) {
+                    Scene scene = two_sheets(transport);
+                    if (all_samplers) use_all_samplers(scene);
+                    return scene;
+                };
+                Scene mixed = sheets(left);
+                mixed.body_transports[1] = right;
+                const std::vector<Flux16> of_left = light_of_body(mixed, 0), of_right = light_of_body(mixed, 1);
+                CHECK(of_left.size() > 100);
+                CHECK(same(of_left, light_of_body(sheets(left), 0)));
+                CHECK(same(of_right, light_of_body(sheets(right), 1)));
+                if (left != right) CHECK_FALSE(same(of_right, light_of_body(sheets(left), 1)));
+            }
+}
+
+// Below a white ceiling light goes from body to body, event by event.
+TEST_CASE("the account closes where light goes between bodies of different transports", "[transport]") {
+    for (const Transport right : {Transport::paper, Transport::walk}) {
+        CAPTURE(word_of(right));
+        Scene scene = two_sheets(Transport::conserving);
+        use_all_samplers(scene);
+        scene.body_transports[1] = right;
+        scene.materials.push_back(diffuse_material(0.9));
+        add_shape(scene, "ceiling", 1, moved(turned_over(make_rectangle(4000.0, 4000.0)), {0.0, 300.0, 0.0}));
+        for (Light& light : scene.lights) std::get<DiskBeam>(light.kind).position_mm.y = 100.0;
+        PhotonPasses passes(scene);
+        const PhotonAccount account = passes.trace(0);
+        check_account(account);
+        CHECK(account.rays > 3 * std::uint64_t{passes.photons});
+    }
+}
+
+// The maps cannot grow: most deposits are refused, and the paths go on as if they had been stored.
+TEST_CASE("a full map costs the deposit, not the path", "[transport]") {
+    const Scene scene = two_sheets(Transport::walk);
+    PhotonPasses passes(scene), small(scene);
+    const PhotonAccount stored = passes.trace(0);
+    Device& device = test_device();
+    const std::uint64_t budget = device.memory_left() + device.memory_in_use();
+    small.pass.prepare(0, small.photons);
+    device.set_memory_budget(device.memory_in_use());
+    const PhotonAccount refused = small.pass.trace();
+    device.set_memory_budget(budget);
+    CHECK(stored.refused_slots == 0);
+    CHECK(refused.refused_slots > 1000);
+    CHECK(refused.energy[7] < 0.1 * stored.energy[7]);
+    CHECK(refused.fates == stored.fates);
+    for (std::size_t k = 0; k < 7; ++k) CHECK(refused.energy[k] == stored.energy[k]);
 }

@@ -35,7 +35,8 @@ Extinction extinction_of(const Medium& medium, const RenderSettings& render) {
 }  // namespace
 
 ConservingTransport::ConservingTransport(const Device& device, const Scene& scene, const DeviceScene& on_device)
-    : ExitTransport(device, STOKES_TRANSPORT_CONSERVING), scene_(scene) {
+    : ExitTransport(device, STOKES_TRANSPORT_CONSERVING, settings_of(scene.render, Transport::conserving).exits),
+      scene_(scene) {
     fold_exits_ = on_device.rays.kernels.program(device, "fold_exits.cl").kernel("fold_exits");
     retrace_exits_ = Program(device, "retrace_subsurface.cl").kernel("retrace_exits");
     reserve_tables(device, scene);

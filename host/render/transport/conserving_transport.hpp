@@ -16,11 +16,11 @@ class ConservingTransport : public ExitTransport {
     ConservingTransport(const Device& device, const Scene& scene, const DeviceScene& on_device);
 
     void prepare(const PassSpectra& spectra) override;
+    Arguments tables() const override;
 
   protected:
     std::vector<ExitGroup> fluorescent_exits() const override;
     std::vector<ExitGroup> elastic_exits() const override;
-    Arguments tables() const override;
     void mend_exits(const SubsurfaceEvent& event, std::uint32_t count) override;
     void retrace(const SubsurfaceEvent& event, const std::vector<EventRound>& rounds) override;
 

@@ -11,7 +11,8 @@ constexpr std::uint64_t most_exits_at_once = 0x7fffffff;
 
 }  // namespace
 
-ExitTransport::ExitTransport(const Device& device, std::uint32_t code) : code_(code) {
+ExitTransport::ExitTransport(const Device& device, std::uint32_t code, int exits)
+    : code_(code), exits_(static_cast<std::uint32_t>(exits)) {
     const Program program(device, "deposit_subsurface.cl");
     sample_exits_ = program.kernel("sample_exits");
     deposit_exits_ = program.kernel("deposit_exits");
@@ -26,7 +27,7 @@ void ExitTransport::scatter(const SubsurfaceEvent& event) {
             EventRound round = event.round_of(code_, kind);
             round.component = group.component;
             round.sampler = group.sampler;
-            round.exits = event.sampling.exits;
+            round.exits = event.sampling.many_exits ? exits_ : 1;
             round.drawn_rows = drawn_rows(event.sampling);
             round.first_exit = static_cast<std::uint32_t>(all_exits);
             all_exits += std::uint64_t{round.count} * round.exits;
@@ -35,7 +36,7 @@ void ExitTransport::scatter(const SubsurfaceEvent& event) {
     }
     if (all_exits == 0) return;
     if (all_exits > most_exits_at_once)
-        throw RunError("too many exit points at once: expected fewer photons or exits an entry");
+        throw RunError("too many exit points at once: expected fewer photons per pass, or fewer exits");
     const auto count = static_cast<std::uint32_t>(all_exits);
     event.exits.reserve(count);
     for (const auto& rounds : lists)

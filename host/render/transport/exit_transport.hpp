@@ -11,10 +11,15 @@ namespace stokes {
 class ExitTransport : public SubsurfaceTransport {
   public:
     void scatter(const SubsurfaceEvent& event) override;
+    std::uint32_t code() const override { return code_; }
+    bool scatters(std::uint32_t) const override { return true; }
+
+    // TABLE_ARGUMENTS, and table16.
+    virtual Arguments tables() const = 0;
 
   protected:
-    // code: STOKES_TRANSPORT_*.
-    ExitTransport(const Device& device, std::uint32_t code);
+    // exits: of an event and component, where a pass lets it have more than one.
+    ExitTransport(const Device& device, std::uint32_t code, int exits);
 
     // Exits of one map and sampler, STOKES_SAMPLER_*, of each event of a list.
     struct ExitGroup {
@@ -24,8 +29,6 @@ class ExitTransport : public SubsurfaceTransport {
     virtual std::vector<ExitGroup> fluorescent_exits() const = 0;
     virtual std::vector<ExitGroup> elastic_exits() const = 0;
 
-    // TABLE_ARGUMENTS.
-    virtual Arguments tables() const = 0;
     // Samples the exits of one group.
     virtual void sample(const SubsurfaceEvent& event, const EventRound& round);
     // Looks after exits that found no surface. Most models drop them.
@@ -39,7 +42,7 @@ class ExitTransport : public SubsurfaceTransport {
     std::vector<ExitGroup> groups_of(std::uint32_t event) const;
     void deposit(const SubsurfaceEvent& event, EventRound round);
 
-    std::uint32_t code_;
+    std::uint32_t code_, exits_;
     Kernel sample_exits_, deposit_exits_;
 };
 

@@ -30,10 +30,11 @@ MediumSpectra spectra_of(const Medium& medium) {
 }  // namespace
 
 PaperTransport::PaperTransport(const Device& device, const Scene& scene)
-    : ExitTransport(device, STOKES_TRANSPORT_PAPER),
+    : ExitTransport(device, STOKES_TRANSPORT_PAPER, 1),
       device_(device),
       scene_(scene),
-      integrates_(!scene.render.tables),
+      integrates_(!settings_of(scene.render, Transport::paper).tables),
+      weighted_(settings_of(scene.render, Transport::paper).distances == Distances::importance),
       wavelengths_(device, "wavelengths of the pass", STOKES_WAVELENGTHS) {
     const Program going_on(device, "retrace_subsurface.cl");
     retrace_fluorescence_ = going_on.kernel("retrace_fluorescence");
@@ -138,7 +139,7 @@ Arguments PaperTransport::tables() const {
 }
 
 std::uint32_t PaperTransport::drawn_rows(const PathSampling& sampling) const {
-    return sampling.weighted_distances ? entries_ : 0;
+    return weighted_ && sampling.weighted_distances ? entries_ : 0;
 }
 
 void PaperTransport::sample(const SubsurfaceEvent& event, const EventRound& round) {

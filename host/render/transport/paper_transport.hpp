@@ -15,14 +15,11 @@ class PaperTransport : public ExitTransport {
     PaperTransport(const Device& device, const Scene& scene);
 
     void prepare(const PassSpectra& spectra) override;
-
-    // Entries of the power tables of all media; 0 where photons integrate.
-    std::uint32_t table_entries() const { return entries_; }
+    Arguments tables() const override;
 
   protected:
     std::vector<ExitGroup> fluorescent_exits() const override;
     std::vector<ExitGroup> elastic_exits() const override;
-    Arguments tables() const override;
     void sample(const SubsurfaceEvent& event, const EventRound& round) override;
     void retrace(const SubsurfaceEvent& event, const std::vector<EventRound>& rounds) override;
     std::uint32_t drawn_rows(const PathSampling& sampling) const override;
@@ -34,7 +31,7 @@ class PaperTransport : public ExitTransport {
 
     Device device_;
     const Scene& scene_;
-    bool integrates_;
+    bool integrates_, weighted_;  // weighted_: distances are drawn where more light leaves
     Kernel retrace_fluorescence_, retrace_elastic_;
 
     // Tables, three a medium: fluorescence, single and multiple scattering.

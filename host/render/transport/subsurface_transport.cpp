@@ -2,14 +2,10 @@
 
 namespace stokes {
 
-PathSampling path_sampling(const RenderSettings& render) {
-    const ResolvedSettings settings = resolved(render);
-    PathSampling sampling;
-    sampling.both_branches = settings.branches == Branches::both;
-    sampling.exits = static_cast<std::uint32_t>(settings.exits);
-    sampling.weighted_distances = settings.distances == Distances::importance;
-    sampling.store_direct = settings.direct == Direct::photons;
-    return sampling;
+ResolvedSettings settings_of(const RenderSettings& render, Transport transport) {
+    RenderSettings own = render;
+    own.transport = transport;
+    return resolved(own);
 }
 
 SubsurfaceExits::SubsurfaceExits(const Device& device, const RayKernels& kernels)

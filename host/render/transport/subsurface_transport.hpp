@@ -17,14 +17,16 @@ namespace stokes {
 
 using PhotonMaps = std::array<PhotonMap, STOKES_MAP_COUNT>;  // by STOKES_MAP_*
 
-// How the photons of a pass are sampled.
+// How the photons of a pass are sampled. Trial passes switch off what the transports' settings may ask for.
 struct PathSampling {
-    bool both_branches = false;       // light below a surface goes both ways, by a fluorophore and past it
-    std::uint32_t exits = 1;          // of an event and component
-    bool weighted_distances = false;  // `paper`: distances are drawn where more light leaves
-    bool store_direct = true;         // photons straight from a light are stored at diffuse surfaces
+    bool both_branches = true;       // light below a surface may go both ways, by a fluorophore and past it
+    bool many_exits = true;          // an event may have more than one exit of each component
+    bool weighted_distances = true;  // distances may be drawn where more light leaves
+    bool store_direct = true;        // photons straight from a light are stored at diffuse surfaces
 };
-PathSampling path_sampling(const RenderSettings& render);
+
+// The settings of a render as the bodies of a transport have them.
+ResolvedSettings settings_of(const RenderSettings& render, Transport transport);
 
 // What a pass's events did beside their kernels.
 struct DepositCounts {
@@ -85,9 +87,13 @@ class SubsurfaceTransport {
 
     // Scatters the paths that its bodies took in: stores what leaves in the maps, and sends each path on, or ends it.
     virtual void scatter(const SubsurfaceEvent& event) = 0;
+
+    // STOKES_TRANSPORT_*, and whether it scatters events of that kind (STOKES_EVENT_FLUORESCENCE, ELASTIC, BRANCHES).
+    virtual std::uint32_t code() const = 0;
+    virtual bool scatters(std::uint32_t event) const = 0;
 };
 
-// One for each transport model that some body of the scene uses, in the order in which they store.
+// One for each transport model that some material of the scene needs, in the order in which they store.
 std::vector<std::unique_ptr<SubsurfaceTransport>> make_transports(const Device& device, const Scene& scene,
                                                                   const DeviceScene& on_device);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/core/error.hpp"
 #include "host/render/transport/conserving_transport.hpp"
 #include "host/render/transport/paper_transport.hpp"
 #include "host/render/transport/walk_transport.hpp"
@@ -35,9 +36,12 @@ class PaperModel : public TransportModel {
                     scene.file, dye.name, gain));
         }
         std::string names;
-        for (const Material& material : scene.materials)
-            if (const auto* translucent = as_translucent(material); translucent != nullptr && translucent->fresnel)
+        for (const MaterialUse& use : material_uses(scene)) {
+            const Material& material = scene.materials[static_cast<std::size_t>(use.material)];
+            const TranslucentMaterial* translucent = as_translucent(material);
+            if (use.transport == Transport::paper && translucent != nullptr && translucent->fresnel)
                 names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
+        }
         if (!names.empty())
             lines.push_back(fmt::format("{}: materials: transport \"paper\" leaves out the Fresnel reflection of {}",
                                         scene.file, names));
@@ -65,7 +69,9 @@ class WalkModel : public TransportModel {
     // Walks have no part in light that does not go below a surface; it is as in `conserving`.
     std::uint32_t surface_code() const override { return STOKES_TRANSPORT_CONSERVING; }
     std::uint32_t table_of(std::uint32_t medium, bool) const override { return medium; }
-    void check(const Scene& scene) const override { check_walkable(scene); }
+    void check(const Scene& scene) const override {
+        check_walkable(scene, [&](int body) { return transport_of_body(scene, body) == Transport::walk; });
+    }
     bool takes_bodies_for_half_spaces() const override { return false; }
     bool takes_up_again(bool first_collision_only) const override { return !first_collision_only; }
     std::unique_ptr<SubsurfaceTransport> make(const Device& device, const Scene&,
@@ -86,9 +92,9 @@ const TransportModel& transport_model(Transport transport) {
         case Transport::conserving:
             return conserving;
         case Transport::walk:
-            break;
+            return walk;
     }
-    return walk;
+    throw RunError("a transport without a model");
 }
 
 Transport transport_of_body(const Scene& scene, int body) {
@@ -109,6 +115,14 @@ std::vector<MaterialUse> material_uses(const Scene& scene) {
         if (translucent && std::none_of(uses.begin(), uses.end(), same)) uses.push_back(use);
     }
     return uses;
+}
+
+std::vector<Transport> transports_of(const Scene& scene) {
+    std::vector<Transport> transports;
+    for (const MaterialUse& use : material_uses(scene))
+        if (std::find(transports.begin(), transports.end(), use.transport) == transports.end())
+            transports.push_back(use.transport);
+    return transports;
 }
 
 std::vector<std::uint32_t> uses_of_shapes(const Scene& scene) {

@@ -33,13 +33,13 @@ class TransportModel {
         return dye.quantum_yield * dye.emission.at(em_nm) / emission_sum * ex_nm / em_nm;
     }
 
-    // InputError for a scene that the model cannot do.
+    // InputError for bodies of this transport that the model cannot do.
     virtual void check(const Scene&) const {}
 
     // What the model ignores or makes of the scene's materials, one line each.
     virtual std::vector<std::string> remarks(const Scene&) const { return {}; }
 
-    // Whether the model takes a body for a half-space.
+    // Whether the model takes a body for a half-space; another one takes it as its mesh is, closed or flat.
     virtual bool takes_bodies_for_half_spaces() const { return true; }
 
     // Whether light that was re-emitted may be taken up again below the same surface.
@@ -66,6 +66,9 @@ struct MaterialUse {
     Transport transport;
 };
 std::vector<MaterialUse> material_uses(const Scene& scene);
+
+// The models that the scene's materials use, each once.
+std::vector<Transport> transports_of(const Scene& scene);
 
 // By shape: index of its material among the uses.
 std::vector<std::uint32_t> uses_of_shapes(const Scene& scene);

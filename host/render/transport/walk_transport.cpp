@@ -16,7 +16,7 @@ void WalkTransport::scatter(const SubsurfaceEvent& event) {
                                                                          {"multiple_heads", "multiple_flux"}}};
     WalkSlots slots{};
     Arguments maps;
-    std::uint32_t refused = 0;  // the maps are of one size and grow together; a path is in one of them
+    std::uint32_t refused = 0;  // at most: a path is in one of the maps, or in none
     for (std::size_t m = 0; m < names.size(); ++m) {
         PhotonMap& map = event.maps[m];
         const Slots taken = event.take_slots(map, round, 1);

@@ -11,6 +11,8 @@ class WalkTransport : public SubsurfaceTransport {
 
     void prepare(const PassSpectra&) override {}
     void scatter(const SubsurfaceEvent& event) override;
+    std::uint32_t code() const override { return STOKES_TRANSPORT_WALK; }
+    bool scatters(std::uint32_t event) const override { return event == STOKES_EVENT_ELASTIC; }
 
   private:
     Kernel walk_;

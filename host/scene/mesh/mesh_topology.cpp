@@ -269,13 +269,15 @@ BodyTopology body_topology(const Scene& scene, int body) {
     return result;
 }
 
-std::vector<BodyKind> check_walkable(const Scene& scene) {
+std::vector<BodyKind> check_walkable(const Scene& scene, const std::function<bool(int)>& wanted) {
     std::vector<BodyKind> kinds(static_cast<std::size_t>(scene.body_count), BodyKind::open);
-    std::vector<bool> seen(kinds.size(), false);
+    std::vector<bool> checked(kinds.size(), false);
     for (const Shape& shape : scene.shapes) {
         const auto body = static_cast<std::size_t>(shape.body);
-        if (seen[body] || !medium_of(scene.materials[static_cast<std::size_t>(shape.material)])) continue;
-        seen[body] = true;
+        if (checked[body] || !wanted(shape.body) ||
+            !medium_of(scene.materials[static_cast<std::size_t>(shape.material)]))
+            continue;
+        checked[body] = true;
         const BodyTopology topology = body_topology(scene, shape.body);
         if (topology.kind == BodyKind::open)
             fail_to_walk(scene, shape,

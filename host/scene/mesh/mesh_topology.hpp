@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -33,6 +34,7 @@ BodyTopology body_topology(const Scene& scene, int body);
 // Bodies that model `walk` can walk in: closed and facing outward, or flat. Returns the kind of each body with a
 // translucent material and subsurface light, `open` for the others. InputError names file and shape of one that is
 // neither.
-std::vector<BodyKind> check_walkable(const Scene& scene);
+std::vector<BodyKind> check_walkable(
+    const Scene& scene, const std::function<bool(int body)>& wanted = [](int) { return true; });
 
 }  // namespace stokes

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "host/core/error.hpp"
 #include "host/scene/mesh/mesh.hpp"
 #include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/material_reader.hpp"
@@ -139,7 +140,8 @@ void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene
     std::vector<std::string> names;
     for (const JsonCursor& place : lights.items()) {
         const ObjectReader where(place, "light");
-        const bool beam = where.kind() == "beam_disk" || where.kind() == "beam_rectangle";
+        const bool beam = where.kind().rfind("beam_", 0) == 0, emitter = where.kind().rfind("emitter_", 0) == 0;
+        if (!beam && !emitter) throw RunError(where.kind() + " is declared, but nothing reads it");
         names.push_back(read_own_name(where, fmt::format("light {}", names.size()), names));
         Light light =
             beam ? read_beam(where, spectra, scene.render) : read_emitter(where, names.back(), spectra, scene);

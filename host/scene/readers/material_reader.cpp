@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/core/error.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/scene/readers/input_files.hpp"
 
@@ -143,8 +144,14 @@ std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader
     for (const auto& [name, place] : materials.named_members()) {
         const ObjectReader where(place, "material");
         Material material;
-        if (where.kind() == "material_diffuse") material.kind = read_diffuse(where, spectra, textures);
-        if (where.kind() == "material_translucent") material.kind = read_translucent(where, scene);
+        if (where.kind() == "material_diffuse")
+            material.kind = read_diffuse(where, spectra, textures);
+        else if (where.kind() == "material_translucent")
+            material.kind = read_translucent(where, scene);
+        else if (where.kind() == "material_black")
+            material.kind = BlackMaterial{};
+        else
+            throw RunError(where.kind() + " is declared, but nothing reads it");
         material.name = name;
         result.push_back(std::move(material));
     }
