@@ -152,8 +152,9 @@ std::vector<float> branch_draws(std::uint32_t paths) {
 }
 
 // By material: the event where the draw is below c, where it is not, and where both branches are asked for. Black
-// absorbs, and so does what nobody knows; a fluorophore that has no re-radiation absorbs, as does a translucent surface without a medium what its
-// fluorophore leaves; both branches are there where light may go either way below the surface.
+// absorbs, and so does what nobody knows; a fluorophore that has no re-radiation absorbs, as does a translucent surface
+// without a medium what its fluorophore leaves; both branches are there where light may go either way below the
+// surface.
 struct Events {
     std::uint32_t below, above;
     bool both = false;

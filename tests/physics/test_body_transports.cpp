@@ -47,8 +47,8 @@ bool same(const std::vector<Flux16>& a, const std::vector<Flux16>& b) {
 
 }  // namespace
 
-// A path's random numbers depend on its index and event alone, so that each body does, to the bit, what it does where all
-// have its transport; and the transports differ, so that none stands in for another.
+// A path's random numbers depend on its index and event alone, so that each body does, to the bit, what it does where
+// all have its transport; and the transports differ, so that none stands in for another.
 TEST_CASE("each body has the light of its own transport", "[transport]") {
     for (const Transport left : {Transport::paper, Transport::conserving, Transport::walk})
         for (const Transport right : {Transport::paper, Transport::conserving, Transport::walk}) {
