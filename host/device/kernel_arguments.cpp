@@ -11,10 +11,13 @@ constexpr const char* word_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLM
 
 std::string without_comments(const std::string& text) {
     std::string result;
-    for (std::size_t at = 0; at < text.size(); ++at) {
-        if (text.compare(at, 2, "//") == 0) at = std::min(text.find('\n', at), text.size());
-        if (text.compare(at, 2, "/*") == 0) at = std::min(text.find("*/", at), text.size()) + 2;
-        if (at < text.size()) result += text[at];
+    for (std::size_t at = 0; at < text.size();) {
+        if (text.compare(at, 2, "//") == 0)
+            at = std::min(text.find('\n', at), text.size());
+        else if (text.compare(at, 2, "/*") == 0)
+            at = std::min(text.find("*/", at), text.size() - 2) + 2;
+        else
+            result += text[at++];
     }
     return result;
 }

@@ -9,8 +9,8 @@ namespace stokes {
 
 namespace {
 
-void expand(const std::string& name, const std::string& text, const std::string& directory, std::set<std::string>& seen,
-            std::string& out) {
+void expand(const std::string& name, const std::string& text, const std::string& directory,
+            std::set<std::string>& known, std::string& out) {
     std::istringstream lines(text);
     std::string line;
     const std::string folder = name.substr(0, name.rfind('/') + 1);  // of the including file; "" at the top
@@ -21,8 +21,8 @@ void expand(const std::string& name, const std::string& text, const std::string&
             const std::size_t first = hash + 10;
             const std::string written = line.substr(first, line.find('"', first) - first);
             const std::string included = written.find('/') == std::string::npos ? folder + written : written;
-            if (seen.insert(included).second) {
-                expand(included, read_kernel_file(included, directory), directory, seen, out);
+            if (known.insert(included).second) {
+                expand(included, read_kernel_file(included, directory), directory, known, out);
                 out += "#line " + std::to_string(number + 1) + " \"kernels/" + name + "\"\n";
             } else {
                 out += '\n';
@@ -46,9 +46,9 @@ std::string read_kernel_file(const std::string& file, const std::string& directo
 }
 
 std::string expand_kernel_source(const std::string& name, const std::string& text, const std::string& directory) {
-    std::set<std::string> seen{name};
+    std::set<std::string> known{name};
     std::string out;
-    expand(name, text, directory, seen, out);
+    expand(name, text, directory, known, out);
     return out;
 }
 

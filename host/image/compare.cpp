@@ -78,11 +78,11 @@ LayerError compare_layer(const std::vector<float>& picture, const std::vector<fl
     std::size_t worst = 0;  // pixel
     error.peak = -infinite;
     for (std::size_t pixel = 0; 3 * pixel < picture.size(); ++pixel) {
-        const auto seen = xyz_at(picture, 3 * pixel), expected = xyz_at(reference, 3 * pixel);
-        if (!seen) ++error.not_finite;
+        const auto found = xyz_at(picture, 3 * pixel), expected = xyz_at(reference, 3 * pixel);
+        if (!found) ++error.not_finite;
         if (!expected) ++error.reference_not_finite;
-        if (!seen || !expected) continue;
-        const glm::dvec3 d = *seen - *expected;
+        if (!found || !expected) continue;
+        const glm::dvec3 d = *found - *expected;
         if (error.compared++ == 0) worst = pixel;
         sums.square += d * d;
         sums.difference += d;
@@ -109,8 +109,8 @@ std::vector<double> pixel_errors(const std::vector<float>& picture, const std::v
     std::vector<double> errors;
     errors.reserve(picture.size() / 3);
     for (std::size_t at = 0; at < picture.size(); at += 3) {
-        const auto seen = xyz_at(picture, at), expected = xyz_at(reference, at);
-        errors.push_back(seen && expected ? glm::length(*seen - *expected) / std::sqrt(3.0) : undefined);
+        const auto found = xyz_at(picture, at), expected = xyz_at(reference, at);
+        errors.push_back(found && expected ? glm::length(*found - *expected) / std::sqrt(3.0) : undefined);
     }
     return errors;
 }

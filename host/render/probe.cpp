@@ -146,11 +146,11 @@ std::vector<double> HalfSpaceProbe::Bench::bin_edges(const ProbeGrid& grid) cons
         const auto sigma_t = [&](int lambda) {
             return material.medium->sigma_s.at(lambda) + material.medium->sigma_a.at(lambda);
         };
-        std::vector<int> seen = grid.emitting;
-        seen.push_back(grid.lambda_ex_nm);
+        std::vector<int> leaving_nm = grid.emitting;
+        leaving_nm.push_back(grid.lambda_ex_nm);
         first = 0.01 / sigma_t(grid.lambda_ex_nm);
         last = 0.0;
-        for (const int lambda : seen) {
+        for (const int lambda : leaving_nm) {
             const double decay = diffusion_decay(std::min(material.medium->sigma_s.at(lambda) / sigma_t(lambda), 1.0));
             last = std::max(last, std::min(1000.0, 20.0 / decay) / sigma_t(lambda));
         }
