@@ -44,16 +44,16 @@ void check_account(const PhotonAccount& account) {
         CHECK(s[1] + s[2] + s[3] + s[4] + s[5] - s[6] == Approx(s[0]).epsilon(1e-5));
 }
 
-// What leaves one of the bodies, map by map, in the order of its paths.
-std::vector<Flux16> light_of_body(const Scene& scene, std::uint32_t body) {
+// What leaves each of the two bodies, map by map, in the order of its paths.
+std::array<std::vector<Flux16>, 2> light_of_bodies(const Scene& scene) {
     PhotonPasses passes(scene);
     check_account(passes.trace(0));
-    std::vector<Flux16> light;
+    std::array<std::vector<Flux16>, 2> light;
     for (std::size_t m = 0; m < 3; ++m) {
         const Deposits deposits = passes.deposits(m);
         for (std::size_t i = 0; i < deposits.heads.size(); ++i)
-            if (deposits.heads[i].normal != STOKES_EMPTY_SLOT && deposits.heads[i].normal >> 24 == body)
-                light.push_back(deposits.flux[i]);
+            if (deposits.heads[i].normal != STOKES_EMPTY_SLOT)
+                light.at(deposits.heads[i].normal >> 24).push_back(deposits.flux[i]);
     }
     return light;
 }
@@ -67,24 +67,28 @@ bool same(const std::vector<Flux16>& a, const std::vector<Flux16>& b) {
 // A path's random numbers depend on its index and event alone, so that each body does, to the bit, what it does where
 // all have its transport; and the transports differ, so that none stands in for another.
 TEST_CASE("each body has the light of its own transport", "[transport]") {
-    const auto transports = {Transport::paper, Transport::conserving, Transport::walk};
-    for (const bool all_samplers : {false, true})
-        for (const Transport left : transports)
-            for (const Transport right : transports) {
-                CAPTURE(all_samplers, word_of(left), word_of(right));
-                const auto sheets = [&](Transport transport) {
-                    Scene scene = two_sheets(transport);
-                    if (all_samplers) use_all_samplers(scene);
-                    return scene;
-                };
-                Scene mixed = sheets(left);
-                mixed.body_transports[1] = right;
-                const std::vector<Flux16> of_left = light_of_body(mixed, 0), of_right = light_of_body(mixed, 1);
-                CHECK(of_left.size() > 100);
-                CHECK(same(of_left, light_of_body(sheets(left), 0)));
-                CHECK(same(of_right, light_of_body(sheets(right), 1)));
-                if (left != right) CHECK_FALSE(same(of_right, light_of_body(sheets(left), 1)));
+    constexpr std::array<Transport, 3> transports = {Transport::paper, Transport::conserving, Transport::walk};
+    for (const bool all_samplers : {false, true}) {
+        const auto sheets = [&](Transport transport) {
+            Scene scene = two_sheets(transport);
+            if (all_samplers) use_all_samplers(scene);
+            return scene;
+        };
+        std::array<std::array<std::vector<Flux16>, 2>, 3> alone;
+        for (std::size_t t = 0; t < 3; ++t) alone[t] = light_of_bodies(sheets(transports[t]));
+        for (std::size_t left = 0; left < 3; ++left)
+            for (std::size_t right = 0; right < 3; ++right) {
+                if (left == right) continue;
+                CAPTURE(all_samplers, word_of(transports[left]), word_of(transports[right]));
+                Scene mixed = sheets(transports[left]);
+                mixed.body_transports[1] = transports[right];
+                const std::array<std::vector<Flux16>, 2> light = light_of_bodies(mixed);
+                CHECK(light[0].size() > 100);
+                CHECK(same(light[0], alone[left][0]));
+                CHECK(same(light[1], alone[right][1]));
+                CHECK_FALSE(same(light[1], alone[left][1]));
             }
+    }
 }
 
 // Below a white ceiling light goes from body to body, event by event.
