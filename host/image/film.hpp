@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,37 +12,29 @@
 
 namespace stokes {
 
-// What the light last went through before it reached the camera.
+// What the light last went through before it reached the camera: a word for each row of STOKES_LAYERS.
 enum class Layer {
-    fluorescence = STOKES_LAYER_FLUORESCENCE,
-    single = STOKES_LAYER_SINGLE,
-    multiple = STOKES_LAYER_MULTIPLE,
-    surface = STOKES_LAYER_SURFACE
+#define STOKES_LAYER_WORD(name, NAME) name = STOKES_LAYER_##NAME,
+    STOKES_LAYERS(STOKES_LAYER_WORD)
+#undef STOKES_LAYER_WORD
 };
 
 struct LayerRow {
     Layer layer;
-    const char* name;        // in files, in statistics and on the command line
-    std::optional<int> map;  // STOKES_MAP_*: whose photons light it; none: a kernel of its own does
+    const char* name;  // in files, in statistics and on the command line
 };
 inline constexpr std::size_t layer_count = STOKES_LAYER_COUNT;
 // In the order of the film on the device.
-inline constexpr std::array<LayerRow, layer_count> layer_rows = {
-    {{Layer::fluorescence, "fluorescence", STOKES_MAP_FLUORESCENCE},
-     {Layer::single, "single", STOKES_MAP_SINGLE},
-     {Layer::multiple, "multiple", STOKES_MAP_MULTIPLE},
-     {Layer::surface, "surface", STOKES_MAP_SURFACE}}};
+inline constexpr std::array<LayerRow, layer_count> layer_rows = {{
+#define STOKES_LAYER_ROW(name, NAME) {Layer::name, #name},
+    STOKES_LAYERS(STOKES_LAYER_ROW)
+#undef STOKES_LAYER_ROW
+}};
 
 // Kernels add a map's light to the layer of its number.
-constexpr bool maps_come_first() {
-    for (std::size_t i = 0; i < layer_count; ++i) {
-        const LayerRow& row = layer_rows[i];
-        if (static_cast<std::size_t>(row.layer) != i || row.map.has_value() != (i < STOKES_MAP_COUNT)) return false;
-        if (row.map && static_cast<std::size_t>(*row.map) != i) return false;
-    }
-    return layer_count >= STOKES_MAP_COUNT;
-}
-static_assert(maps_come_first());
+static_assert(STOKES_LAYER_FLUORESCENCE == STOKES_MAP_FLUORESCENCE && STOKES_LAYER_SINGLE == STOKES_MAP_SINGLE &&
+              STOKES_LAYER_MULTIPLE == STOKES_MAP_MULTIPLE && STOKES_LAYER_SURFACE == STOKES_MAP_SURFACE);
+static_assert(STOKES_LAYER_COUNT >= STOKES_MAP_COUNT);
 
 // XYZ (colour.hpp: Y in cd/m^2) of each layer, index (y * width + x) * 3 + channel, top row first.
 struct FilmImage {
