@@ -86,8 +86,8 @@ __kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, 
         const uint l = light_count <= MOST_LIGHTS
                            ? k
                            : pick_light(lights, light_count, ((float)k + pick) * (1.0f / (float)MOST_LIGHTS));
-        const Shadow shadow = shadow_of(of_scene, l, spread_over_passes(pass, point.pixel, 2u + k),
-                                        times_picked(lights, light_count, l), pass->offset_mm, to);
+        const float2 place = draws_a_place(&lights[l]) ? spread_over_passes(pass, point.pixel, 2u + k) : 0.0f;
+        const Shadow shadow = shadow_of(of_scene, l, place, times_picked(lights, light_count, l), pass->offset_mm, to);
         near |= shadow.near;
         if (!(shadow.factor > 0.0f)) continue;
         const float4 lit = film_value(light_radiance[l] * reflected, pass);
