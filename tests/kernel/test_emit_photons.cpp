@@ -108,54 +108,32 @@ Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cel
     std::vector<std::uint32_t> first, cell_of_path;
     std::vector<Place> places;
     std::vector<EventSample> words;
+    const Arguments scene = Arguments()
+                                .add("pass", pass)
+                                .add("lights", on_device(lights()))
+                                .add("light_areas", on_device(areas))
+                                .add("triangles", on_device(all))
+                                .add("photon_flux", on_device(photon_flux()));
+    const Arguments paths = Arguments().add("rays", rays).add("flux", flux).add("ledgers", ledgers).add("list", list);
     if (cells) {
         first = cells->first_photons(seed, pass_index);
-        const Buffer<EmissionCell> records = on_device(cells->records());
-        const Buffer<std::uint32_t> starts = on_device(first), owners(test_device(), "cells", photons);
+        const Buffer<std::uint32_t> owners(test_device(), "cells", photons);
         const Buffer<Place> at(test_device(), "places", photons);
         const Buffer<EventSample> event_samples =
             on_device(std::vector<EventSample>(room, EventSample{sentinel, sentinel}));
-        const auto count = static_cast<std::uint32_t>(cells->records().size());
+        const Arguments strata = Arguments()
+                                     .add("cell_count", static_cast<std::uint32_t>(cells->records().size()))
+                                     .add("cells", on_device(cells->records()))
+                                     .add("first_photons", on_device(first));
         program.kernel("emit_stratified")
-            .launch(photons, Arguments()
-                                 .add("pass", pass)
-                                 .add("cell_count", count)
-                                 .add("cells", records)
-                                 .add("first_photons", starts)
-                                 .add("lights", on_device(lights()))
-                                 .add("light_areas", on_device(areas))
-                                 .add("triangles", on_device(all))
-                                 .add("photon_flux", on_device(photon_flux()))
-                                 .add("rays", rays)
-                                 .add("flux", flux)
-                                 .add("ledgers", ledgers)
-                                 .add("list", list)
-                                 .add("event_samples", event_samples));
+            .launch(photons, scene, paths, strata, Arguments("event_samples", event_samples));
         words = event_samples.download();
         program.kernel("find_places")
-            .launch(photons, Arguments()
-                                 .add("pass", pass)
-                                 .add("cell_count", count)
-                                 .add("cells", records)
-                                 .add("first_photons", starts)
-                                 .add("lights", on_device(lights()))
-                                 .add("cell_of_path", owners)
-                                 .add("places", at, "float4"));
+            .launch(photons, scene, strata, Arguments("cell_of_path", owners).add("places", at, "float4"));
         cell_of_path = owners.download();
         places = at.download();
     } else {
-        program.kernel("emit_photons")
-            .launch(photons, Arguments()
-                                 .add("pass", pass)
-                                 .add("light_count", 5u)
-                                 .add("lights", on_device(lights()))
-                                 .add("light_areas", on_device(areas))
-                                 .add("triangles", on_device(all))
-                                 .add("photon_flux", on_device(photon_flux()))
-                                 .add("rays", rays)
-                                 .add("flux", flux)
-                                 .add("ledgers", ledgers)
-                                 .add("list", list));
+        program.kernel("emit_photons").launch(photons, scene, paths, Arguments("light_count", 5u));
     }
     Emitted result{rays.download(photons),
                    flux.download(photons),

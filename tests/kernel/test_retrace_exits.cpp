@@ -20,24 +20,12 @@ struct Events {
     std::vector<PathLedger> ledgers;
 };
 
-ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, const Flux16& kept, const Flux16& event, bool found,
-                  std::uint32_t material) {
-    const glm::vec3 n(normal), p = 2.0f * n;
-    return {p.x,
-            p.y,
-            p.z,
-            1.5f,
-            n.x,
-            n.y,
-            n.z,
-            0.5f,
-            path,
-            material,
-            0.7f,
-            2.0f,
-            light_of(kept),
-            light_of(event),
-            found ? 1u : 0u};
+ExitPoint exit_with(const glm::dvec3& normal, std::uint32_t path, const Flux16& kept, const Flux16& event, bool found,
+                    std::uint32_t material) {
+    ExitPoint exit = exit_at(normal, path, light_of(kept), found, material);
+    exit.event_light = light_of(event);
+    exit.scale = 2.0f;  // it is in the light kept already
+    return exit;
 }
 
 Flux16 times(const Flux16& flux, double factor) {
@@ -60,9 +48,9 @@ Events events(std::uint32_t paths, double direct, double scattered, bool direct_
     e.first_map.assign(paths, first);
     e.second_map.assign(paths, second);
     for (std::uint32_t i = 0; i < paths; ++i)
-        e.exits.push_back(exit_at(direct_normal, i, first, sent_on, direct_found, material));
+        e.exits.push_back(exit_with(direct_normal, i, first, sent_on, direct_found, material));
     for (std::uint32_t i = 0; i < paths; ++i)
-        e.exits.push_back(exit_at(scattered_normal, i, second, taken_up, scattered_found, material));
+        e.exits.push_back(exit_with(scattered_normal, i, second, taken_up, scattered_found, material));
     return e;
 }
 
@@ -272,7 +260,7 @@ void check_branches(double kept_share) {
             for (std::size_t k = 0; k < each; ++k) {
                 const double tilt = 0.3 * double(g * each + k);
                 const glm::dvec3 normal(0.0, std::cos(tilt), std::sin(tilt));
-                e.exits.push_back(exit_at(normal, i, stored[g][k], event, g * each + k != missed, 0));
+                e.exits.push_back(exit_with(normal, i, stored[g][k], event, g * each + k != missed, 0));
                 exit_flux.push_back(stored[g][k]);
             }
     }

@@ -78,24 +78,8 @@ Retraced retrace_fluorescence(const Deposited& d, EventRound round, std::uint32_
 
 const glm::dvec3 single_normal(0.6, 0.0, -0.8), multiple_normal(0.0, 1.0, 0.0);
 
-ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, double kept, bool found, std::uint32_t material = 0) {
-    const glm::vec3 n(normal), p = 2.0f * n;
-    return {p.x,
-            p.y,
-            p.z,
-            1.5f,
-            n.x,
-            n.y,
-            n.z,
-            20.0f,
-            path,
-            material,
-            0,
-            1,
-            {static_cast<float>(kept), 0},
-            {0, 0},
-            found ? 1u : 0u};
-}
+// The photons are asked for by no case here.
+LightSum energy_alone(double energy) { return {static_cast<float>(energy), 0.0f}; }
 
 // The same elastic event many times: shares of the incident flux that single and multiple scattering keep.
 Deposited elastic_events(std::uint32_t paths, double single, double multiple, bool single_found = true,
@@ -106,9 +90,10 @@ Deposited elastic_events(std::uint32_t paths, double single, double multiple, bo
     Deposited d;
     d.flux.assign(paths, incident);
     d.ledgers.assign(paths, open_ledger(incident));
-    for (std::uint32_t i = 0; i < paths; ++i) d.exits.push_back(exit_at(single_normal, i, single * in, single_found));
     for (std::uint32_t i = 0; i < paths; ++i)
-        d.exits.push_back(exit_at(multiple_normal, i, multiple * in, multiple_found));
+        d.exits.push_back(exit_at(single_normal, i, energy_alone(single * in), single_found));
+    for (std::uint32_t i = 0; i < paths; ++i)
+        d.exits.push_back(exit_at(multiple_normal, i, energy_alone(multiple * in), multiple_found));
     return d;
 }
 
@@ -189,7 +174,7 @@ Deposited fluorescent_events(std::uint32_t paths, double lowest_share, double hi
         d.exit_flux.push_back(constant_flux(0.0f));
         for (std::size_t k = 0; k < 16; ++k)
             d.exit_flux[i].v[k] = static_cast<float>(converted[k] * double(share.v[k]));
-        d.exits.push_back(exit_at(single_normal, i, sum_of(d.exit_flux[i]), i % 11 != 10, i % 3));
+        d.exits.push_back(exit_at(single_normal, i, energy_alone(sum_of(d.exit_flux[i])), i % 11 != 10, i % 3));
         d.exits[i].event_light.energy = static_cast<float>(std::accumulate(converted.begin(), converted.end(), 0.0));
     }
     return d;

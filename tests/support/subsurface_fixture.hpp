@@ -14,6 +14,22 @@
 
 namespace stokes {
 
+// An exit of a path, 2 mm along its normal, that keeps that light; nothing of its event beside it.
+inline ExitPoint exit_at(const glm::dvec3& normal, std::uint32_t path, const LightSum& kept, bool found,
+                         std::uint32_t material = 0) {
+    ExitPoint exit{};
+    const glm::vec3 n(normal), p = 2.0f * n;
+    exit.x = p.x, exit.y = p.y, exit.z = p.z;
+    exit.nx = n.x, exit.ny = n.y, exit.nz = n.z;
+    exit.r_mm = 1.5f, exit.row = 20.0f, exit.way_mm = 0.7f;  // nothing that follows depends on them
+    exit.path = path;
+    exit.material = material;
+    exit.scale = 1.0f;
+    exit.kept = kept;
+    exit.found = found ? 1 : 0;
+    return exit;
+}
+
 // Two media of three tables. Each component has distances of its own, 0.. for fluorescence, 10.. for single
 // and 20.. for multiple scattering, so that a distance tells which table it came from; multiple scattering
 // has a single row.
