@@ -12,6 +12,7 @@
 #include "host/core/error.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/core/text_input.hpp"
+#include "host/scene/settings/domain.hpp"
 
 namespace stokes {
 
@@ -53,8 +54,8 @@ Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside,
 Medium medium_of(const MaterialFlags& flags) {
     Medium medium;
     medium.name = "command line";
-    medium.sigma_s = spectrum_of("--sigma-s", flags.sigma_s, Outside::hold, 1e12);
-    medium.sigma_a = spectrum_of("--sigma-a", flags.sigma_a, Outside::hold, 1e12);
+    medium.sigma_s = spectrum_of("--sigma-s", flags.sigma_s, Outside::hold, largest_spectrum_value);
+    medium.sigma_a = spectrum_of("--sigma-a", flags.sigma_a, Outside::hold, largest_spectrum_value);
     medium.eta = flags.eta;
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);

@@ -12,10 +12,4 @@ inline std::string json_text(const nlohmann::ordered_json& json, int indent = 2)
     return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
-inline std::string json_quoted(const std::string& text) {
-    std::string quoted = json_text(text, -1);
-    quoted.pop_back();
-    return quoted;
-}
-
 }  // namespace stokes

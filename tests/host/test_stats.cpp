@@ -14,7 +14,10 @@ namespace {
 RenderStats example() {
     RenderStats stats;
     stats.settings = resolved({});
+    stats.ray_kernel = "avx2";
     stats.wall_s = 2.5;
+    stats.processor_s = 4.75;
+    stats.trials_processor_s = 0.375;
     stats.photons_emitted = 12000000000ull;  // beyond 32 bits
     stats.rays_traced = 50;
     stats.stages = {{"trace_closest", 1.0 / 3.0}};
@@ -23,6 +26,8 @@ RenderStats example() {
     stats.ledger.power.escaped = 0.25;
     stats.ledger.photons.emitted = 3e18;
     stats.ledger.photons.absorbed = 1e18;
+    stats.ledger.paths = 10;
+    stats.ledger.escaped_paths = 4;
     return stats;
 }
 
@@ -42,6 +47,21 @@ TEST_CASE("the statistics hold what follows from the figures, to every digit", "
     CHECK(json.at("stages").at("trace_closest") == 1.0 / 3.0);
     CHECK(json.at("ledger").at("imbalance") == 0.125);                                    // 2 - 1.5 - 0.25, of 2
     CHECK(json.at("ledger_photons").at("imbalance").get<double>() == Approx(2.0 / 3.0));  // 3 - 1, of 3
+}
+
+// Scripts and people read these by name.
+TEST_CASE("figures stand under their own names", "[stats]") {
+    const nlohmann::json json = written(example());
+    CHECK(json.at("ray_kernel") == "avx2");
+    CHECK(json.at("wall_s") == 2.5);
+    CHECK(json.at("processor_s") == 4.75);
+    CHECK(json.at("trials_processor_s") == 0.375);
+    CHECK(json.at("rays_traced") == 50);
+    CHECK(json.at("ledger").at("absorbed") == 1.5);
+    CHECK(json.at("ledger").at("escaped") == 0.25);
+    CHECK(json.at("ledger_photons").at("absorbed") == 1e18);
+    CHECK(json.at("paths").at("emitted") == 10);
+    CHECK(json.at("paths").at("escaped") == 4);
 }
 
 TEST_CASE("the statistics hold every setting by its key, with the value that was rendered", "[stats]") {

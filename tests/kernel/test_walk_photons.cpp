@@ -247,11 +247,9 @@ void check_walks(const Entering& e, const Options& options = {}) {
 const std::vector<std::uint32_t> all_kinds = {plain, reflecting, fluorescent, lossless};
 
 bool same_results(const Walked& a, const Walked& b) {
-    const auto same = [](const auto& x, const auto& y) {
-        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
-    };
-    bool all = same(a.rays, b.rays) && same(a.flux, b.flux) && same(a.ledgers, b.ledgers);
-    for (std::size_t m = 0; m < 3; ++m) all = all && same(a.heads[m], b.heads[m]) && same(a.stored[m], b.stored[m]);
+    bool all = same_bits(a.rays, b.rays) && same_bits(a.flux, b.flux) && same_bits(a.ledgers, b.ledgers);
+    for (std::size_t m = 0; m < 3; ++m)
+        all = all && same_bits(a.heads[m], b.heads[m]) && same_bits(a.stored[m], b.stored[m]);
     return all;
 }
 

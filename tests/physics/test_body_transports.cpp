@@ -1,6 +1,5 @@
 // Bodies whose light travels by another transport than the render's.
 #include <array>
-#include <cstring>
 
 #include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
@@ -58,10 +57,6 @@ std::array<std::vector<Flux16>, 2> light_of_bodies(const Scene& scene) {
     return light;
 }
 
-bool same(const std::vector<Flux16>& a, const std::vector<Flux16>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Flux16)) == 0;
-}
-
 }  // namespace
 
 // A path's random numbers depend on its index and event alone, so that each body does, to the bit, what it does where
@@ -84,9 +79,9 @@ TEST_CASE("each body has the light of its own transport", "[transport]") {
                 mixed.body_transports[1] = transports[right];
                 const std::array<std::vector<Flux16>, 2> light = light_of_bodies(mixed);
                 CHECK(light[0].size() > 100);
-                CHECK(same(light[0], alone[left][0]));
-                CHECK(same(light[1], alone[right][1]));
-                CHECK_FALSE(same(light[1], alone[left][1]));
+                CHECK(same_bits(light[0], alone[left][0]));
+                CHECK(same_bits(light[1], alone[right][1]));
+                CHECK_FALSE(same_bits(light[1], alone[left][1]));
             }
     }
 }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "host/core/error.hpp"
 #include "host/scene/mesh/mesh.hpp"
 #include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/material_reader.hpp"
@@ -88,10 +87,12 @@ Light read_beam(const ObjectReader& where, SpectrumReader& spectra, const Render
         const double radius_mm = where.number("radius_mm");
         light.kind = DiskBeam{place_beam(where, radius_mm, radius_mm)};
         area_mm2 = M_PI * radius_mm * radius_mm;
-    } else {
+    } else if (where.kind() == "beam_rectangle") {
         const RectangleBeam beam{place_beam(where, 0.5 * where.number("width_mm"), 0.5 * where.number("height_mm"))};
         light.kind = beam;
         area_mm2 = 4.0 * glm::length(beam.half_u_mm) * glm::length(beam.half_v_mm);
+    } else {
+        where.fail_unread();
     }
     const double power_w = where.number("irradiance_W_m2") * area_mm2 * m2_per_mm2;
     light.flux = with_total(where, spectra.read(where, "spectrum", Outside::zero), power_w, render);
@@ -111,9 +112,11 @@ Mesh read_emitter_mesh(const ObjectReader& where, glm::dmat4& transform) {
     } else if (where.kind() == "emitter_disk") {
         transform = placed(read_frame(where, "normal"), where.vector("center_mm"));
         mesh = make_disk(where.number("radius_mm"));
-    } else {
+    } else if (where.kind() == "emitter_sphere") {
         transform[3] = glm::dvec4(where.vector("center_mm"), 1.0);
         mesh = make_sphere(where.number("radius_mm"));
+    } else {
+        where.fail_unread();
     }
     return mesh;
 }
@@ -141,7 +144,7 @@ void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene
     for (const JsonCursor& place : lights.items()) {
         const ObjectReader where(place, "light");
         const bool beam = where.kind().rfind("beam_", 0) == 0, emitter = where.kind().rfind("emitter_", 0) == 0;
-        if (!beam && !emitter) throw RunError(where.kind() + " is declared, but nothing reads it");
+        if (!beam && !emitter) where.fail_unread();
         names.push_back(read_own_name(where, fmt::format("light {}", names.size()), names));
         Light light =
             beam ? read_beam(where, spectra, scene.render) : read_emitter(where, names.back(), spectra, scene);

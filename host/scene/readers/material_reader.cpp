@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "host/core/error.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/scene/readers/input_files.hpp"
 
@@ -151,7 +150,7 @@ std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader
         else if (where.kind() == "material_black")
             material.kind = BlackMaterial{};
         else
-            throw RunError(where.kind() + " is declared, but nothing reads it");
+            where.fail_unread();
         material.name = name;
         result.push_back(std::move(material));
     }

@@ -42,7 +42,8 @@ glm::dmat4 read_step(const JsonCursor& place) {
     if (where.kind() == "transform_rotate") {
         return glm::rotate(identity, glm::radians(where.number("angle_deg")), where.direction("rotate_axis"));
     }
-    return glm::translate(identity, where.vector("translate_mm"));
+    if (where.kind() == "transform_translate") return glm::translate(identity, where.vector("translate_mm"));
+    where.fail_unread();
 }
 
 glm::dmat4 read_transform(const JsonCursor& shape) {
@@ -84,7 +85,8 @@ Mesh read_shape_mesh(const ObjectReader& where, ShapeFiles& files) {
         return make_prism(where.integer("sides"), where.number("radius_mm"), where.number("height_mm"));
     if (kind == "shape_cylinder")
         return make_cylinder(where.number("radius_mm"), where.number("height_mm"), where.integer("segments"));
-    return read_mask(where, files);
+    if (kind == "shape_mask") return read_mask(where, files);
+    where.fail_unread();
 }
 
 const Material& material_of(const Scene& scene, int material) {
@@ -119,6 +121,7 @@ std::vector<Mesh> read_parts(const ObjectReader& where, std::size_t material_cou
                 fmt::format("at most {} materials for {} x {} tiles", columns + rows - 1, columns, rows));
         return make_tiles(size, columns, rows, parts);
     }
+    if (where.kind() != "shape_sectors") where.fail_unread();
     if (parts > most_sectors) materials.fail_expected(fmt::format("at most {} materials", most_sectors));
     return make_sectors(where.number("radius_mm"), where.number("height_mm"), parts, where.integer("segments"),
                         where.number("start_deg"));

@@ -5,17 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host/core/overloaded.hpp"
+
 namespace stokes {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
 
 // Whole numbers without a point.
 Json plain_number(double value) {

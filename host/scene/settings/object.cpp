@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "host/core/error.hpp"
 #include "host/scene/settings/objects.hpp"
 
 namespace stokes {
@@ -77,6 +78,8 @@ double ObjectReader::number(const std::string& key) const {
     const auto value = find(key);
     return value ? value->number(key_of<NumberRange>(key)) : std::get<double>(key_of(key).fallback);
 }
+
+void ObjectReader::fail_unread() const { throw RunError(kind() + " is declared, but nothing reads it"); }
 
 int ObjectReader::integer(const std::string& key) const {
     const auto value = find(key);

@@ -42,6 +42,9 @@ class ObjectReader : public JsonCursor {
     // "shape_box", where the kind asked for was "shape".
     const std::string& kind() const { return object_->kind; }
 
+    // Of a kind that is declared and that the caller has no code for: an error of the program, RunError.
+    [[noreturn]] void fail_unread() const;
+
     // The key's value, or its default. vector, direction, name: of keys that are there.
     double number(const std::string& key) const;
     int integer(const std::string& key) const;
