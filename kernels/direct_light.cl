@@ -42,19 +42,6 @@ FORCE_INLINE float times_picked(__global const LightRecord* lights, uint light_c
     return (float)MOST_LIGHTS * (lights[light].cumulative_probability - before);
 }
 
-// First light whose cumulative probability exceeds u.
-FORCE_INLINE uint pick_light(__global const LightRecord* lights, uint light_count, float u) {
-    uint low = 0u, high = light_count - 1u;
-    while (low < high) {
-        const uint middle = (low + high) / 2u;
-        if (lights[middle].cumulative_probability > u)
-            high = middle;
-        else
-            low = middle + 1u;
-    }
-    return low;
-}
-
 // Work-items: count, one a point. Adds what the lights bring straight to the points of diffuse surfaces:
 // L = reflectance / pi * irradiance. All lights are looked at while they are few; of more, MOST_LIGHTS are drawn by
 // their power, stratified.

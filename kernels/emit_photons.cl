@@ -53,8 +53,7 @@ __kernel void emit_photons(__global const PassConstants* pass, LIGHT_ARGUMENTS, 
     if (path >= pass->photons) return;
     const Random4 at = random4(pass->seed, pass->pass, path, 0u, RNG_EMIT_POSITION);
     const Random4 to = random4(pass->seed, pass->pass, path, 0u, RNG_EMIT_DIRECTION);
-    uint light_index = 0u;
-    while (light_index + 1u < light_count && at.a >= lights[light_index].cumulative_probability) ++light_index;
+    const uint light_index = pick_light(lights, light_count, at.a);
     const EmittedRay start = emitted_ray((Lights){lights, light_areas, triangles}, light_index, pass->offset_mm,
                                          (float4)(at.b, at.c, to.a, to.b));
     start_path(path, start, photon_flux[light_index], pass, rays, flux, ledgers, list);
