@@ -31,14 +31,23 @@ FORCE_INLINE uint list_of(uint event, uint transport) {
     return event == STOKES_EVENT_SPECULAR ? STOKES_LIST_NONE : STOKES_LIST_ENDED;
 }
 
+// Where a path is listed whose ray runs in the medium of a body of model `walk`: it walks on from where the ray starts.
+FORCE_INLINE uint walk_on(__global const BodyRecord* bodies, uint body, __global const MaterialRecord* materials,
+                          Ray ray, __global SurfacePoint* point) {
+    const uint material = bodies[body].material;
+    *point = (SurfacePoint){ray.ox, ray.oy, ray.oz, material, -ray.dx, -ray.dy, -ray.dz, body};
+    return list_of(STOKES_EVENT_ELASTIC, materials[material].transport);
+}
+
 // Work-items: round.count, one an entry of list.
-// Reads: list [round.count], hits, flux [W/nm, paths], triangles, shapes, materials, spectra (excitation, sigma_t).
-// Writes: points [paths], entry_lists [round.count]: STOKES_LIST_*, ledgers (paths that end here), rays (specular
-//   reflection; a mirrored path goes on with the flux it has).
+// Reads: list [round.count], hits, flux [W/nm, paths], triangles, shapes, materials, bodies, spectra (excitation,
+//   sigma_t).
+// Writes: points [paths], departures (the body that is met), entry_lists [round.count]: STOKES_LIST_*, ledgers (paths
+//   that end here), rays (specular reflection; a mirrored path goes on with the flux it has).
 // Light that meets the back of a surface is absorbed, unless it is two-sided.
-__kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, __global const uint* list,
-                               PATH_ARGUMENTS, __global const Hit* hits, __global SurfacePoint* points,
-                               __global uchar* entry_lists) {
+__kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, __global const BodyRecord* bodies,
+                               __global const uint* list, PATH_ARGUMENTS, __global const Hit* hits,
+                               __global SurfacePoint* points, __global uchar* entry_lists) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint path = list[i];
@@ -51,6 +60,13 @@ __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMEN
         return;
     }
     const Hit hit = hits[path];
+    __global Departure* departure = &departures[path];
+    if (departure->inside != STOKES_NONE && (departure->arrives == 0u || hit.triangle == STOKES_NONE)) {
+        departure->body = departure->inside;
+        entry_lists[i] = (uchar)walk_on(bodies, departure->inside, materials, rays[path], &points[path]);
+        return;
+    }
+    departure->arrives = 0u;
     if (hit.triangle == STOKES_NONE) {
         add_light(&ledger->escaped, total);
         ledger->fate = STOKES_FATE_ESCAPED;
@@ -61,6 +77,7 @@ __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMEN
     const float3 normal = facing_normal(*tri, direction);
     const float3 position = hit_position(rays[path], hit, tri);
     const uint material = shapes[tri->shape].material;
+    departure->body = tri->body;
     points[path] =
         (SurfacePoint){position.x, position.y, position.z, material, normal.x, normal.y, normal.z, tri->body};
 
@@ -71,12 +88,13 @@ __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMEN
                           : STOKES_EVENT_NONE;
     if (kind == STOKES_EVENT_SPECULAR) {
         ledger->reflections += 1u;
-        continue_path(&rays[path], ledger, &round, pass->offset_mm, position, normal, reflect_at(direction, normal),
-                      total);
+        continue_path(&rays[path], &departures[path], ledger, &round, pass->offset_mm, position, normal,
+                      reflect_at(direction, normal), total);
         if (round.last != 0u) return;
     } else if (kind == STOKES_EVENT_NONE) {
+        const bool behind = !(cos_in > 0.0f) && materials[material].kind == STOKES_TRANSLUCENT;
         add_light(&ledger->absorbed, total);
-        ledger->fate = STOKES_FATE_ABSORBED;
+        ledger->fate = behind ? STOKES_FATE_BEHIND : STOKES_FATE_ABSORBED;
     }
     entry_lists[i] = (uchar)list_of(kind, materials[material].transport);
 }

@@ -1,5 +1,6 @@
 // Light that falls straight from the lights onto the diffuse surfaces that the camera sees, by shadow rays.
 #include "lib/bvh.clh"
+#include "lib/contacts.clh"
 #include "lib/film.clh"
 #include "lib/inline.clh"
 #include "lib/lights.clh"
@@ -83,9 +84,9 @@ __kernel void add_direct_light(uint count, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS, 
     if (near) {
         const float2 u = spread_over_passes(pass, point.pixel, 1u);
         const float3 d = cosine_direction(normal, u.x, u.y);
-        const BvhFilter all = {BVH_BOTH, 0u, 0};
+        const BvhFilter all = {BVH_BOTH, 0u, 0, 0u, (float3)(0.0f)};
         const Ray ray = {to.from.x, to.from.y, to.from.z, 0.0f, d.x, d.y, d.z, INFINITY};
-        const Hit hit = bvh_closest(scene, ray, all);
+        const Hit hit = settled(scene, triangles, ray, bvh_closest(scene, ray, all), STOKES_NONE, pass->offset_mm);
         const uint l = hit.triangle == STOKES_NONE ? STOKES_NONE : shapes[triangles[hit.triangle].shape].light;
         if (l != STOKES_NONE)
             sum += factor_where_met(of_scene, l, hit.triangle, hit.t, d, times_picked(lights, light_count, l), to) *

@@ -10,15 +10,16 @@
 #include "shared/path.h"
 #include "shared/ray.h"
 
-// Writes the state of a path that starts along a ray; photon_flux: of one of its light's photons.
-FORCE_INLINE void start_path(uint path, EmittedRay ray, float16 photon_flux, __global const PassConstants* pass,
-                             __global Ray* rays, __global float16* flux, __global PathLedger* ledgers,
-                             __global uint* list) {
+// Writes the state of a path that starts along a ray; inside: as in LightRecord; photon_flux: of one of its light's
+// photons.
+FORCE_INLINE void start_path(uint path, EmittedRay ray, uint inside, float16 photon_flux,
+                             __global const PassConstants* pass, PATH_ARGUMENTS, __global uint* list) {
     const float16 start = photon_flux * ray.share;
     const float2 total = light_of(start, pass);
     const bool dark = !(total.x > 0.0f);
     rays[path] = (Ray){ray.origin.x,    ray.origin.y,    ray.origin.z,    0.0f,
                        ray.direction.x, ray.direction.y, ray.direction.z, dark ? -1.0f : INFINITY};
+    departures[path] = (Departure){ray.normal.x, ray.normal.y, ray.normal.z, ray.body, inside, 0u, {0u, 0u}};
     flux[path] = start;
     const LightSum none = {0.0f, 0.0f};
     ledgers[path] = (PathLedger){{total.x, total.y},
@@ -44,7 +45,7 @@ FORCE_INLINE void start_path(uint path, EmittedRay ray, float16 photon_flux, __g
 // Reads: pass (seed, pass, photons, offset_mm), lights [lights], light_areas [triangles of all surface lights,
 //   cumulative mm^2 within a light], triangles [triangles], photon_flux [lights]: flux of one photon of that light
 //   [W/nm], which includes 1/(photons * probability of the light).
-// Writes: rays, flux [W/nm], ledgers, list [paths].
+// Writes: rays, departures, flux [W/nm], ledgers, list [paths].
 // A light is chosen by its probability; a surface emits cosine-distributed from a point uniform in area, a beam
 // emits parallel light from a point uniform over its cross-section.
 __kernel void emit_photons(__global const PassConstants* pass, LIGHT_ARGUMENTS, __global const Triangle* triangles,
@@ -56,7 +57,8 @@ __kernel void emit_photons(__global const PassConstants* pass, LIGHT_ARGUMENTS, 
     const uint light_index = pick_light(lights, light_count, at.a);
     const EmittedRay start = emitted_ray((Lights){lights, light_areas, triangles}, light_index, pass->offset_mm,
                                          (float4)(at.b, at.c, to.a, to.b));
-    start_path(path, start, photon_flux[light_index], pass, rays, flux, ledgers, list);
+    start_path(path, start, lights[light_index].inside, photon_flux[light_index], pass, rays, departures, flux, ledgers,
+               list);
 }
 
 // Work-items: pass->photons, one a path.
@@ -81,7 +83,8 @@ __kernel void emit_stratified(__global const PassConstants* pass, EMISSION_ARGUM
     const EmittedRay start = emitted_ray((Lights){lights, light_areas, triangles}, light, pass->offset_mm, place);
     const uint count = first_photons[c + 1u] - first_photons[c];
     const float weight = cells[c].probability * (float)pass->photons / (float)count;
-    start_path(path, start, photon_flux[light] * weight, pass, rays, flux, ledgers, list);
+    start_path(path, start, lights[light].inside, photon_flux[light] * weight, pass, rays, departures, flux, ledgers,
+               list);
 }
 
 // Work-items: pass->photons, one a path. Reads as emit_stratified. Writes: where that starts them: cell_of_path [paths]

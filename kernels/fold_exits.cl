@@ -22,7 +22,7 @@ __kernel void fold_exits(uint count, __global const PassConstants* pass, RAY_SCE
     if (i >= count || exits[i].found != 0u) return;
     const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
     const uint body = probes[i].body;
-    const BvhFilter front = {BVH_FRONT, body, triangles};
+    const BvhFilter front = {BVH_FRONT, body, triangles, 0u, (float3)(0.0f)};
     const float least = 16.0f * pass->offset_mm;
     float3 from = (float3)(exits[i].x, exits[i].y, exits[i].z);
     float3 normal = (float3)(probes[i].nx, probes[i].ny, probes[i].nz);

@@ -62,7 +62,8 @@ __kernel void retrace_fluorescence(EventRound round, PASS_ARGUMENTS, __global co
     ledger->conversions += 1u;
     ledger->history = with_leader(ledger->history, ledger->leader);
     flux[path] = carried;
-    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(exit_point.x, exit_point.y, exit_point.z),
+    continue_diffuse(&rays[path], &departures[path], ledger, &round, pass->offset_mm,
+                     (float3)(exit_point.x, exit_point.y, exit_point.z),
                      (float3)(exit_point.nx, exit_point.ny, exit_point.nz), going_on, draw.b, draw.c);
 }
 
@@ -112,8 +113,9 @@ __kernel void retrace_elastic(EventRound round, __global const PassConstants* pa
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - missed - going_on);
     flux[path] = carried;
-    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
-                     (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);
+    continue_diffuse(&rays[path], &departures[path], ledger, &round, pass->offset_mm,
+                     (float3)(chosen.x, chosen.y, chosen.z), (float3)(chosen.nx, chosen.ny, chosen.nz), going_on,
+                     draw.b, draw.c);
 }
 
 // What the events of a list did with their light.
@@ -203,6 +205,7 @@ __kernel void retrace_exits(EventRound round, ExitGroups groups, __global const 
         ledger->history = with_leader(ledger->history, ledger->leader);
     }
     flux[path] = carried;
-    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(chosen.x, chosen.y, chosen.z),
-                     (float3)(chosen.nx, chosen.ny, chosen.nz), going_on, draw.b, draw.c);
+    continue_diffuse(&rays[path], &departures[path], ledger, &round, pass->offset_mm,
+                     (float3)(chosen.x, chosen.y, chosen.z), (float3)(chosen.nx, chosen.ny, chosen.nz), going_on,
+                     draw.b, draw.c);
 }

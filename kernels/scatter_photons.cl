@@ -45,6 +45,6 @@ __kernel void scatter_diffuse(EventRound round, PASS_ARGUMENTS, TEXTURE_ARGUMENT
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, leaving - going_on);
     flux[path] = carried;
-    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, (float3)(point.x, point.y, point.z), normal,
-                     going_on, draw.b, draw.c);
+    continue_diffuse(&rays[path], &departures[path], ledger, &round, pass->offset_mm,
+                     (float3)(point.x, point.y, point.z), normal, going_on, draw.b, draw.c);
 }

@@ -26,7 +26,7 @@ __kernel void sum_ledgers(uint count, uint chunk_size, __global const PathLedger
     total.missed_exits = 0u;
     total.rays = 0u;
     total.reflections = 0u;
-    total.pad[0] = total.pad[1] = total.pad[2] = 0u;
+    total.pad[0] = total.pad[1] = 0u;
     for (uint i = first; i < last; ++i) {
         const PathLedger ledger = ledgers[i];
         add_exactly(&light[0], &lost[0], light_in(ledger.emitted));

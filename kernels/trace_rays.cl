@@ -13,7 +13,7 @@ __kernel void trace_closest(uint n, RAY_SCENE_ARGUMENTS, __global const uint* li
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
     const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
-    const BvhFilter all = {BVH_BOTH, 0u, 0};
+    const BvhFilter all = {BVH_BOTH, 0u, 0, 0u, (float3)(0.0f)};
     const uint j = list[i];
     hits[j] = bvh_closest(scene, rays[j], all);
 }
@@ -23,7 +23,7 @@ __kernel void trace_closest_all(uint n, RAY_SCENE_ARGUMENTS, __global const Ray*
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
     const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
-    const BvhFilter all = {BVH_BOTH, 0u, 0};
+    const BvhFilter all = {BVH_BOTH, 0u, 0, 0u, (float3)(0.0f)};
     hits[i] = bvh_closest(scene, rays[i], all);
 }
 
@@ -70,7 +70,7 @@ __kernel void trace_packets(uint n, RAY_SCENE_ARGUMENTS, __global const Ray* ray
             return;
         }
     }
-    const BvhFilter all = {BVH_BOTH, 0u, 0};
+    const BvhFilter all = {BVH_BOTH, 0u, 0, 0u, (float3)(0.0f)};
     for (uint i = first; i < min(first + BVH_PACKET, n); ++i) hits[i] = bvh_closest(scene, rays[i], all);
 }
 #endif

@@ -1,5 +1,6 @@
 // What camera rays meet in scenes with smooth surfaces, which mirror part of them (PHYSICS section 4).
 #include "lib/bvh.clh"
+#include "lib/contacts.clh"
 #include "lib/fresnel.clh"
 #include "lib/inline.clh"
 #include "lib/rng.clh"
@@ -31,11 +32,12 @@ __kernel void trace_reflections(CameraRecord camera, __global const PassConstant
     const uint2 at = pixel_of_ray(i, camera.width, camera.height);
     const uint pixel = at.y * camera.width + at.x;
     const BvhScene scene = {bvh_nodes, bvh_blocks, bvh_grid};
-    const BvhFilter all = {BVH_BOTH, 0u, 0};
+    const BvhFilter all = {BVH_BOTH, 0u, 0, 0u, (float3)(0.0f)};
     Ray ray = rays[i];
     Hit hit = hits[i];
     for (uint reflections = 0u;; ++reflections) {
-        if (reflections > 0u) hit = bvh_closest(scene, ray, all);
+        if (reflections > 0u)
+            hit = settled(scene, triangles, ray, bvh_closest(scene, ray, all), STOKES_NONE, pass->offset_mm);
         if (hit.triangle == STOKES_NONE) break;
         const Triangle t = triangles[hit.triangle];
         __global const MaterialRecord* material = &materials[shapes[t.shape].material];

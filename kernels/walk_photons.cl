@@ -18,11 +18,14 @@ FORCE_INLINE void fill_slot(__global PhotonHead* heads, __global float16* map_fl
 }
 
 // Work-items: round.count, one an entry of its list: photons that go below a surface.
-// Reads: event_lists, points (entry; its material is that of the whole body), rays (incident direction), bodies
-//   [STOKES_BODY_*], the scene, materials, spectra (excitation, re-radiation, sigma_t, albedo).
+// Reads: event_lists, points (entry; its material is that of the whole body), rays (incident direction), departures
+//   (whether the walk starts within the body, where the ray starts), bodies, the scene, materials, spectra (excitation,
+//   re-radiation, sigma_t, albedo).
 // Writes: slot slots.first[m] + i of each map m: the flux that leaves [W/nm], in one of them at most: F if it was
 //   re-emitted; else S if it scattered once and went straight out, or did not scatter at all (light through a thin
 //   mesh); else M. rays, flux, ledgers.
+// Light that comes to what lies within the body is not stored: its ray goes on there, and starts in the body's medium
+// again where it leaves that.
 // A flat body lets light out in the tangent plane of its entry, where the sheet is; else it is a missed exit. The path
 // goes on with what was stored, roulette below ROULETTE_SHARE of what it was emitted with; in a direction of the same
 // law as `conserving` has, so that the two differ by what happens below the surface alone.
@@ -30,7 +33,7 @@ FORCE_INLINE void fill_slot(__global PhotonHead* heads, __global float16* map_fl
 // take.
 __kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RAY_SCENE_ARGUMENTS,
                            __global const Triangle* triangles, __global const MaterialRecord* materials,
-                           __global const uint* bodies, __global const uint* event_lists,
+                           __global const BodyRecord* bodies, __global const uint* event_lists,
                            __global const SurfacePoint* points, PATH_ARGUMENTS, __global PhotonHead* fluorescence_heads,
                            __global float16* fluorescence_flux, __global PhotonHead* single_heads,
                            __global float16* single_flux, __global PhotonHead* multiple_heads,
@@ -46,7 +49,8 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RA
                  spectra[material->sigma_row + 1u],
                  uptake_of(material, spectra),
                  least16(spectra[material->sigma_row]),
-                 bodies[point.body] == STOKES_BODY_FLAT,
+                 (bodies[point.body].flags & STOKES_BODY_FLAT) != 0u,
+                 (bodies[point.body].flags & STOKES_BODY_HOLLOW) != 0u,
                  point.body,
                  (float3)(point.x, point.y, point.z),
                  (float3)(point.nx, point.ny, point.nz),
@@ -60,8 +64,10 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RA
     tangent_frame(body.normal, &body.tangent_s, &body.tangent_t);
 
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_RETRACE);
-    Walker walker =
-        enter(&body, (float3)(rays[path].dx, rays[path].dy, rays[path].dz), flux[path], ledger->history, draw.d);
+    const float3 direction = (float3)(rays[path].dx, rays[path].dy, rays[path].dz);
+    const bool within = departures[path].inside == point.body;
+    Walker walker = within ? start_walk(&body, direction, flux[path], ledger->history, draw.d)
+                           : enter(&body, direction, flux[path], ledger->history, draw.d);
     uint fate = incident.x > 0.0f ? walk(&walker, &body, path, round.event * WALK_STEPS, ledger->conversions,
                                          ROULETTE_SHARE * incident.x)
                                   : STOKES_FATE_ABSORBED;
@@ -81,7 +87,7 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RA
                                              : STOKES_FATE_ALIVE;
     }
 
-    const bool out = fate == STOKES_FATE_ALIVE;
+    const bool out = fate == STOKES_FATE_ALIVE && !walker.met;
     const PhotonHead head = {position.x, position.y, position.z,
                              out ? pack_normal(normal, point.body) : STOKES_EMPTY_SLOT};
     fill_slot(fluorescence_heads, fluorescence_flux, slots.first[0] + i, slots.limit[0],
@@ -105,18 +111,27 @@ __kernel void walk_photons(EventRound round, WalkSlots slots, PASS_ARGUMENTS, RA
         end_path(&rays[path], ledger, fate);
         return;
     }
-    if (slots.first[component] + i < slots.limit[component]) add_light(&ledger->stored, kept);
+    if (out && slots.first[component] + i < slots.limit[component]) add_light(&ledger->stored, kept);
     const float survival = min(kept.x / (16.0f * ROULETTE_SHARE * ledger->reference_flux), 1.0f);
     if (!(draw.a < survival)) {
         add_light(&ledger->roulette, kept);
         end_path(&rays[path], ledger, STOKES_FATE_ABSORBED);
         return;
     }
-    const float16 carried = leaving * (exit_weight(material, draw.b) / survival);
+    const float16 carried = leaving * ((walker.met ? 1.0f : exit_weight(material, draw.b)) / survival);
     const float2 going_on = light_of(carried, pass);
     add_light(&ledger->roulette, kept - going_on);
     ledger->conversions += walker.conversions;
     ledger->history = walker.history;
     flux[path] = carried;
-    continue_diffuse(&rays[path], ledger, &round, pass->offset_mm, position, normal, going_on, draw.b, draw.c);
+    departures[path].inside = walker.met ? point.body : bodies[point.body].inside;
+    departures[path].arrives = (uint)walker.met;
+    if (walker.met) {  // its ray finds once more what it has come to
+        continue_path(&rays[path], &departures[path], ledger, &round, 0.0f, walker.at, walker.direction,
+                      walker.direction, going_on);
+        rays[path].t_min = -pass->offset_mm;
+        return;
+    }
+    continue_diffuse(&rays[path], &departures[path], ledger, &round, pass->offset_mm, position, normal, going_on,
+                     draw.b, draw.c);
 }

@@ -15,6 +15,7 @@
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
 #include "host/render/assumptions.hpp"
+#include "host/render/conflicts.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
 #include "host/render/transport/transport_model.hpp"
@@ -93,6 +94,7 @@ void render(const RenderOptions& options) {
     check_keeps(outputs, options.reference_file, "the reference");
     const Scene scene = read_scene(options.scene_file, options.settings);
     for (const Transport transport : transports_of(scene)) transport_model(transport).check(scene);
+    for (const std::string& line : find_conflicts(scene)) warn(line);
     const std::unique_ptr<ErrorCurve> curve = make_curve(options, scene.film);
     for (const Transport transport : transports_of(scene))
         for (const std::string& line : transport_model(transport).remarks(scene)) warn(line);

@@ -17,35 +17,74 @@ namespace {
 // Rays start this share of the scene's size off a surface: some tens of times the rounding of a coordinate.
 constexpr double offset_share = 4e-6;
 
-std::vector<std::uint32_t> body_kinds(const Scene& scene) {
-    std::vector<std::uint32_t> kinds(static_cast<std::size_t>(std::max(scene.body_count, 1)), STOKES_BODY_CLOSED);
+// Index of the body within which a thing lies whose light is followed there, else STOKES_NONE.
+std::uint32_t walked_container(const Scene& scene, const Container& container) {
+    const bool walked =
+        container.whole && !transport_model(transport_of_body(scene, *container.whole)).takes_bodies_for_half_spaces();
+    return walked ? static_cast<std::uint32_t>(*container.whole) : STOKES_NONE;
+}
+
+std::vector<BodyRecord> body_records(const Scene& scene, const Contacts& contacts) {
+    std::vector<BodyRecord> records(static_cast<std::size_t>(std::max(scene.body_count, 1)),
+                                    BodyRecord{0, 0, STOKES_NONE, 0});
     const auto by_mesh = [&](int body) {
         return !transport_model(transport_of_body(scene, body)).takes_bodies_for_half_spaces();
     };
     const std::vector<BodyKind> walkable = check_walkable(scene, by_mesh);
-    for (std::size_t body = 0; body < walkable.size(); ++body)
-        if (walkable[body] == BodyKind::flat) kinds[body] = STOKES_BODY_FLAT;
-    return kinds;
+    const std::vector<std::uint32_t> uses = uses_of_shapes(scene);
+    for (std::size_t s = 0; s < scene.shapes.size(); ++s)
+        records[static_cast<std::size_t>(scene.shapes[s].body)].material = uses[s];
+    for (std::size_t body = 0; body < walkable.size(); ++body) {
+        BodyRecord& record = records[body];
+        if (walkable[body] == BodyKind::flat) record.flags |= STOKES_BODY_FLAT;
+        if (contacts.touches[body]) record.flags |= STOKES_BODY_TOUCHES;
+        if (contacts.solid[body]) record.flags |= STOKES_BODY_SOLID;
+        if (contacts.holds[body]) record.flags |= STOKES_BODY_HOLLOW;
+        if (walkable[body] == BodyKind::closed)
+            record.inside = walked_container(scene, container_of_body(scene, static_cast<int>(body)));
+    }
+    return records;
+}
+
+// Flags of the triangles of each shape that do not depend on the triangle.
+std::uint32_t shape_flags(const Scene& scene, const Shape& shape, const Contacts& contacts) {
+    const bool opaque = !medium_of(scene.materials[static_cast<std::size_t>(shape.material)]);
+    return (shape.two_sided ? STOKES_TRIANGLE_TWO_SIDED : 0u) | (opaque ? STOKES_TRIANGLE_OPAQUE : 0u) |
+           (shape.light >= 0 ? STOKES_TRIANGLE_EMITTER : 0u) |
+           (contacts.solid[static_cast<std::size_t>(shape.body)] ? STOKES_TRIANGLE_SOLID : 0u);
 }
 
 }  // namespace
 
-std::vector<Triangle> scene_triangles(const Scene& scene) {
+std::vector<Triangle> scene_triangles(const Scene& scene, const Contacts& contacts) {
     std::vector<Triangle> triangles;
     for (std::size_t s = 0; s < scene.shapes.size(); ++s) {
         const Shape& shape = scene.shapes[s];
+        const std::uint32_t flags = shape_flags(scene, shape, contacts);
         for (const glm::uvec3& t : shape.mesh.triangles) {
             const glm::vec3 a = shape.mesh.positions_mm[t.x];
             const glm::vec3 e1 = shape.mesh.positions_mm[t.y] - a, e2 = shape.mesh.positions_mm[t.z] - a;
+            const bool contested = contacts.contested[triangles.size()];
             triangles.push_back({a.x, a.y, a.z, static_cast<std::uint32_t>(s), e1.x, e1.y, e1.z,
-                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z, shape.two_sided ? 1u : 0u});
+                                 static_cast<std::uint32_t>(shape.body), e2.x, e2.y, e2.z,
+                                 flags | (contested ? STOKES_TRIANGLE_CONTESTED : 0u)});
         }
     }
     return triangles;
 }
 
+double ray_offset_mm(const Scene& scene) {
+    const SceneExtent extent = scene_extent(scene);
+    const glm::dvec3 farthest = glm::max(glm::abs(extent.minimum), glm::abs(extent.maximum));
+    return offset_share * std::max({farthest.x, farthest.y, farthest.z});
+}
+
 DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
-    const std::vector<Triangle> all = scene_triangles(scene);
+    const double offset = ray_offset_mm(scene);
+    const Contacts contacts = find_contacts(scene, offset);
+    has_contacts = contacts.any_touch;
+    has_contested = contacts.any_contested;
+    const std::vector<Triangle> all = scene_triangles(scene, contacts);
     std::vector<std::uint32_t> first_triangle{0};
     std::vector<ShapeRecord> shape_records;
     const std::vector<std::uint32_t> uses = uses_of_shapes(scene);
@@ -62,19 +101,20 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     textures = upload_textures(device, scene);
 
     light_probability = light_probabilities(scene);
-    const LightTables tables_of_lights = light_tables(scene, light_probability, all, first_triangle);
+    LightTables tables_of_lights = light_tables(scene, light_probability, all, first_triangle);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        tables_of_lights.records[i].inside = walked_container(scene, container_of_light(scene, scene.lights[i]));
     lights = Buffer<LightRecord>(device, "lights", tables_of_lights.records);
     light_areas = Buffer<float>(device, "light areas", tables_of_lights.areas);
     light_spread = tables_of_lights.spread;
     light_count = static_cast<std::uint32_t>(scene.lights.size());
     has_mirrors = std::any_of(records.begin(), records.end(), may_mirror);
-    bodies = Buffer<std::uint32_t>(device, "bodies", body_kinds(scene));
+    bodies = Buffer<BodyRecord>(device, "bodies", body_records(scene, contacts));
 
     const SceneExtent extent = scene_extent(scene);
     minimum_mm = glm::vec3(extent.minimum);
     maximum_mm = glm::vec3(extent.maximum);
-    const glm::dvec3 farthest = glm::max(glm::abs(extent.minimum), glm::abs(extent.maximum));
-    offset_mm = static_cast<float>(offset_share * std::max({farthest.x, farthest.y, farthest.z}));
+    offset_mm = static_cast<float>(offset);
 }
 
 Arguments DeviceScene::arguments() const {

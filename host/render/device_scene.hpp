@@ -7,6 +7,7 @@
 #include "host/device/kernel.hpp"
 #include "host/render/device_textures.hpp"
 #include "host/render/ray_casting.hpp"
+#include "host/scene/mesh/contacts.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/light.h"
 #include "kernels/shared/material.h"
@@ -24,11 +25,13 @@ struct DeviceScene {
     Buffer<ShapeRecord> shapes;
     Buffer<MaterialRecord> materials;
     DeviceTextures textures;
-    Buffer<std::uint32_t> bodies;  // STOKES_BODY_*, by body; one entry where the transport does not ask
+    Buffer<BodyRecord> bodies;
     RayScene rays;
     Buffer<LightRecord> lights;
     Buffer<float> light_areas;                     // cumulative area of the triangles of each surface light [mm^2]
     bool has_mirrors = false;                      // some material mirrors camera rays
+    bool has_contacts = false;                     // some bodies touch
+    bool has_contested = false;                    // some triangles lie in one place
     std::vector<double> light_probability;         // per light
     std::vector<double> light_spread;              // per light, LightTables::spread
     float offset_mm = 0.0f;                        // rays start this far off a surface
@@ -36,7 +39,10 @@ struct DeviceScene {
     std::uint32_t light_count = 0;
 };
 
+// How far rays start off a surface [mm].
+double ray_offset_mm(const Scene& scene);
+
 // All triangles of the scene in the order of its shapes; degenerate ones are kept, they are never hit.
-std::vector<Triangle> scene_triangles(const Scene& scene);
+std::vector<Triangle> scene_triangles(const Scene& scene, const Contacts& contacts);
 
 }  // namespace stokes

@@ -2,12 +2,17 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "host/core/log.hpp"
 
 namespace stokes {
+
+// Share of the photons that may meet the backs of translucent surfaces unsaid: rays between triangles that do not quite
+// meet.
+constexpr double most_behind = 1e-4;
 
 double Balance::imbalance() const {
     const double came = emitted + created;
@@ -21,6 +26,14 @@ void warn_about(const Ledger& ledger) {
             "{:.3g} times the emitted light was created, by power tables above one or by fluorophores that emit "
             "more than they take up",
             power.created / power.emitted));
+    const double behind =
+        static_cast<double>(ledger.paths_behind) / static_cast<double>(std::max<std::uint64_t>(ledger.paths, 1));
+    if (behind > most_behind)
+        warn(
+            fmt::format("{:.2g} of the photons met a translucent surface from behind and were absorbed there: its "
+                        "faces look inward, "
+                        "bodies pass through one another, or it is seen through an opening",
+                        behind));
     for (const double imbalance : {power.imbalance(), ledger.photons.imbalance()})
         if (!(std::abs(imbalance) < 1e-4)) {
             warn(fmt::format("the account of the light does not close: imbalance {:.2g}", imbalance));
@@ -67,7 +80,8 @@ Ledger LedgerBook::ledger() const {
     ledger.power = mean_balance(power_, share);
     ledger.photons = mean_balance(photons_, share);
     ledger.paths = photons();
-    ledger.absorbed_paths = fates_[STOKES_FATE_ABSORBED];
+    ledger.paths_behind = fates_[STOKES_FATE_BEHIND];
+    ledger.absorbed_paths = fates_[STOKES_FATE_ABSORBED] + ledger.paths_behind;
     ledger.escaped_paths = fates_[STOKES_FATE_ESCAPED];
     ledger.dropped_paths = ledger.paths - ledger.absorbed_paths - ledger.escaped_paths;
     return ledger;

@@ -31,10 +31,11 @@ struct Ledger {
     Balance photons;  // [1/s]
     // Simulated paths, of all passes, by how they ended.
     std::uint64_t paths = 0, absorbed_paths = 0, escaped_paths = 0, dropped_paths = 0;
+    std::uint64_t paths_behind = 0;  // of the absorbed ones: by the back of a translucent surface
 };
 
-// Says, once, what a user should not overlook: light created beyond a hundredth of what was emitted, or an account that
-// does not close to 1e-4.
+// Says, once, what a user should not overlook: light created beyond a hundredth of what was emitted, an account that
+// does not close to 1e-4, or photons that met translucent surfaces from behind.
 void warn_about(const Ledger& ledger);
 
 // Sums over all passes of a render.

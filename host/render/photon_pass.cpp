@@ -29,6 +29,8 @@ PhotonPass::PhotonPass(const Device& device, const Scene& scene, const DeviceSce
     emit_ = emission.kernel("emit_photons");
     emit_stratified_ = emission.kernel("emit_stratified");
     trace_ = on_device.rays.kernels.program(device, "trace_rays.cl").kernel("trace_closest");
+    if (on_device.has_contacts)
+        settle_ = on_device.rays.kernels.program(device, "settle_hits.cl").kernel("settle_photons");
     classify_ = Program(device, "classify_photons.cl").kernel("classify_photons");
     scatter_ = Program(device, "scatter_photons.cl").kernel("scatter_diffuse");
 }
@@ -77,7 +79,9 @@ void PhotonPass::emit() const {
 }
 
 void PhotonPass::trace_rays(std::uint32_t count) const {
-    trace_.launch(count, Arguments("n", count), common_, paths_.list());
+    const Arguments n("n", count);
+    trace_.launch(count, n, common_, paths_.list());
+    if (on_device_.has_contacts) settle_.launch(count, n, common_, paths_.list());
 }
 
 // Finds what happens to each photon where it landed, and lists them by that.

@@ -56,7 +56,7 @@ class PhotonPass {
     PhotonMaps maps_;
     SubsurfaceExits exits_;
     std::vector<std::unique_ptr<SubsurfaceTransport>> transports_;  // those that some body uses
-    Kernel emit_, emit_stratified_, trace_, classify_, scatter_;
+    Kernel emit_, emit_stratified_, trace_, settle_, classify_, scatter_;
     Arguments common_;  // of the scene, the pass and the paths
 };
 

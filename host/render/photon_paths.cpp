@@ -17,6 +17,7 @@ Arguments chunked(std::uint32_t count) { return Arguments("count", count).add("c
 
 PhotonPaths::PhotonPaths(const Device& device, std::uint32_t paths)
     : rays_(device, "photon rays", paths),
+      departures_(device, "departures", paths),
       hits_(device, "photon hits", paths),
       flux_(device, "photon flux", paths),
       ledgers_(device, "photon ledgers", paths),
@@ -35,6 +36,7 @@ PhotonPaths::PhotonPaths(const Device& device, std::uint32_t paths)
     write_ = lists.kernel("write_lists");
     sum_ = Program(device, "sum_ledgers.cl").kernel("sum_ledgers");
     arguments_ = Arguments("rays", rays_)
+                     .add("departures", departures_)
                      .add("flux", flux_)
                      .add("ledgers", ledgers_)
                      .add("hits", hits_)

@@ -46,6 +46,7 @@ class PhotonPaths {
   private:
     Kernel count_, scan_, write_, sum_;
     Buffer<Ray> rays_;
+    Buffer<Departure> departures_;
     Buffer<Hit> hits_;
     Buffer<Flux16> flux_;
     Buffer<PathLedger> ledgers_;

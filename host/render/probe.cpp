@@ -86,7 +86,7 @@ struct HalfSpaceProbe::Bench {
           batches(std::max(least_batches, (s.photons + most_photons_per_batch - 1) / most_photons_per_batch)),
           photons(static_cast<std::uint32_t>((s.photons + batches - 1) / batches)),
           pass(on, scene, on_device, photons, photons) {
-        on_device.bodies.upload({STOKES_BODY_FLAT});
+        on_device.bodies.upload({BodyRecord{STOKES_BODY_FLAT, 0, STOKES_NONE, 0}});
         // Far below the mean free paths, so that it matters nowhere.
         on_device.offset_mm = static_cast<float>(1e-3 * mean_free_paths(material).shortest_mm);
         for (int lambda = s.lambda_min_nm; lambda <= s.lambda_max_nm; lambda += s.step_nm) grid_nm.push_back(lambda);

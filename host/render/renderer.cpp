@@ -56,6 +56,7 @@ Renderer::Renderer(const Device& device, const Scene& scene)
       film_(device, "film", std::vector<FilmValue>(layer_count * view_.ray_count(), FilmValue{0, 0, 0, 0})) {
     const RayKernels& kernels = on_device_.rays.kernels;
     trace_ = kernels.program(device, "trace_rays.cl").kernel(kernels.packets ? "trace_packets" : "trace_closest_all");
+    if (on_device_.has_contested) settle_ = kernels.program(device, "settle_hits.cl").kernel("settle_hits");
     if (on_device_.has_mirrors)
         trace_reflections_ = kernels.program(device, "trace_reflections.cl").kernel("trace_reflections");
     const std::clock_t start = std::clock();
@@ -194,6 +195,7 @@ void Renderer::find_visible_points(const CameraRecord& camera) {
     const std::uint32_t count = view_.ray_count();
     view_.make_rays(camera, common, camera_rays_);
     trace_.launch(on_device_.rays.kernels.packets ? (count + ray_packet - 1) / ray_packet : count, common, rays);
+    if (on_device_.has_contested) settle_.launch(count, common, rays);
     if (on_device_.has_mirrors) trace_reflections_.launch(count, common, rays, Arguments("camera", camera));
     gather_.collect_points(common, camera_rays_, camera_hits_, film_);
 }

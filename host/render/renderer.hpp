@@ -62,6 +62,7 @@ class Renderer {
     CameraView view_;
     Gather gather_;
     Kernel trace_;              // camera rays, to what they meet first
+    Kernel settle_;             // camera rays, where surfaces lie in one place
     Kernel trace_reflections_;  // camera rays, on from surfaces that mirror them
     Buffer<Ray> camera_rays_;
     Buffer<Hit> camera_hits_;

@@ -30,8 +30,10 @@
 #define TABLE_ARGUMENTS \
     __global const TableShape *table_shapes, __global const float *mean_rows, __global const float *cumulative_rows
 
-// The state of each path [paths]: its next ray, its flux [W/nm] and its account. Bound by PhotonPaths.
-#define PATH_ARGUMENTS __global Ray *rays, __global float16 *flux, __global PathLedger *ledgers
+// The state of each path [paths]: its next ray, where that starts, its flux [W/nm] and its account. Bound by
+// PhotonPaths.
+#define PATH_ARGUMENTS \
+    __global Ray *rays, __global Departure *departures, __global float16 *flux, __global PathLedger *ledgers
 
 // The slots of a photon map (shared/photon.h). Bound by PhotonMap.
 #define MAP_ARGUMENTS __global PhotonHead *map_heads, __global float16 *map_flux

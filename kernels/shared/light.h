@@ -22,7 +22,7 @@ typedef struct LightRecord {
     float ux, uy, uz;              // beam: half-axis of the cross-section [mm]
     unsigned int dimensions;       // coordinates of a place in its cube, 2 or 4: lib/lights.clh
     float vx, vy, vz;              // beam: the other half-axis [mm]
-    unsigned int pad2;
+    unsigned int inside;           // the body within which it lies, or STOKES_NONE
 } LightRecord;
 STOKES_ASSERT_SIZE(LightRecord, 80);
 

@@ -28,9 +28,20 @@ typedef struct ShapeRecord {
 } ShapeRecord;
 STOKES_ASSERT_SIZE(ShapeRecord, 8);
 
-// How a body without thickness or volume of its own is to be taken: bodies [bodies], for model `walk`.
-#define STOKES_BODY_CLOSED 0u  // a closed mesh
-#define STOKES_BODY_FLAT 1u    // a flat sheet, the surface of a half-space
+// BodyRecord.flags
+#define STOKES_BODY_FLAT 1u     // model `walk`: a flat sheet, the surface of a half-space; else a closed mesh
+#define STOKES_BODY_TOUCHES 2u  // another body comes as near as rays start off a surface
+#define STOKES_BODY_SOLID 4u    // its surface is closed
+#define STOKES_BODY_HOLLOW 8u   // model `walk`: other surfaces may lie within it
+
+// Shapes that exchange light below their surfaces, and each other shape by itself. Written by the host once per scene.
+typedef struct BodyRecord {
+    unsigned int flags;     // STOKES_BODY_*
+    unsigned int material;  // index into the MaterialRecord buffer: of one of its shapes
+    unsigned int inside;    // the body of model `walk` within which it lies, or STOKES_NONE
+    unsigned int pad;
+} BodyRecord;
+STOKES_ASSERT_SIZE(BodyRecord, 16);
 
 // Written by the host once per scene. A "row" is an index into the pass's spectra: one float16, the value at each
 // of the pass's wavelengths. Row i is the reflectance of material i. There is a record for each material of the scene,

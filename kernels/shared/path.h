@@ -12,7 +12,8 @@
 #define STOKES_FATE_MISSED_EXIT 3u  // its exit point found no surface
 #define STOKES_FATE_OVERFLOW 4u     // its flux grew beyond STOKES_FLUX_LIMIT times what it started with
 #define STOKES_FATE_EVENT_LIMIT 5u  // the pass's limit of events was reached
-#define STOKES_FATE_COUNT 6u
+#define STOKES_FATE_BEHIND 6u       // absorbed by the back of a translucent surface
+#define STOKES_FATE_COUNT 7u
 
 // Power tables above one can multiply light without end where it cannot leave; a path is cut at this multiple.
 #define STOKES_FLUX_LIMIT 1e6f
@@ -69,13 +70,23 @@ STOKES_ASSERT_SIZE(PathLedger, 96);
 // The accounts of a chunk of paths, added up. Written by sum_ledgers, read back by the host once a pass.
 typedef struct LedgerSums {
     LightSum light[8];      // emitted, absorbed, stokes_loss, escaped, dropped, roulette, created, stored
-    unsigned int fates[6];  // paths by STOKES_FATE_*
+    unsigned int fates[7];  // paths by STOKES_FATE_*
     unsigned int missed_exits;
     unsigned int rays;
     unsigned int reflections;
-    unsigned int pad[3];
+    unsigned int pad[2];
 } LedgerSums;
 STOKES_ASSERT_SIZE(LedgerSums, 112);
+
+// Where a path's ray starts. Written by emission, and by every kernel that sends a path on.
+typedef struct Departure {
+    float nx, ny, nz;      // normal of the surface that it leaves, on the side to which it leaves, unit length
+    unsigned int body;     // the body that it met last, STOKES_NONE: none yet; written by classify_photons
+    unsigned int inside;   // the body of model `walk` in whose medium it runs, STOKES_NONE: it runs in the open
+    unsigned int arrives;  // 1: its walk in that medium has ended: it reaches what lies within
+    unsigned int pad[2];
+} Departure;
+STOKES_ASSERT_SIZE(Departure, 32);
 
 // Where a path meets a surface. Written by classify_photons.
 typedef struct SurfacePoint {

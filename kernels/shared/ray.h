@@ -32,14 +32,22 @@ typedef struct Probe {
 } Probe;
 STOKES_ASSERT_SIZE(Probe, 32);
 
+// Triangle.flags
+#define STOKES_TRIANGLE_TWO_SIDED 1u  // the back is like the front, else the back is black
+#define STOKES_TRIANGLE_OPAQUE 2u     // no light goes below it
+#define STOKES_TRIANGLE_EMITTER 4u    // the surface of a light
+#define STOKES_TRIANGLE_SOLID 8u      // part of a closed surface, which has an inside
+#define STOKES_TRIANGLE_CONTESTED \
+    16u  // another body's triangle may lie in its plane, on either side (lib/contacts.clh)
+
 // One triangle of the scene, in the order of the scene's shapes. Written by the host once per scene.
 typedef struct Triangle {
-    float v0x, v0y, v0z;     // first vertex [mm]
-    unsigned int shape;      // index into the ShapeRecord buffer
-    float e1x, e1y, e1z;     // v1 - v0 [mm]; the geometric normal is e1 x e2, outward
-    unsigned int body;       // shapes of one body share subsurface light
-    float e2x, e2y, e2z;     // v2 - v0 [mm]
-    unsigned int two_sided;  // 1: the back is like the front; 0: the back is black
+    float v0x, v0y, v0z;  // first vertex [mm]
+    unsigned int shape;   // index into the ShapeRecord buffer
+    float e1x, e1y, e1z;  // v1 - v0 [mm]; the geometric normal is e1 x e2, outward
+    unsigned int body;    // shapes of one body share subsurface light
+    float e2x, e2y, e2z;  // v2 - v0 [mm]
+    unsigned int flags;   // STOKES_TRIANGLE_*
 } Triangle;
 STOKES_ASSERT_SIZE(Triangle, 48);
 

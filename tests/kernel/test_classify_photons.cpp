@@ -122,6 +122,8 @@ Classified classify(const Arrivals& a, std::uint32_t event = 0, std::uint32_t br
                                    .add("pass", pass_on_device(seed))
                                    .add("list", on_device(a.list))
                                    .add("rays", on_device(a.rays))
+                                   .add("departures", open_departures(a.rays.size()))
+                                   .add("bodies", on_device(std::vector<BodyRecord>(1)))
                                    .add("hits", on_device(a.hits))
                                    .add("flux", on_device(a.flux))
                                    .add("triangles", on_device(a.triangles))
@@ -212,7 +214,9 @@ void check_arrival(const Arrivals& a, const Classified& result, std::size_t entr
     if (std::abs(facing) < 1e-5) return;
     const std::uint32_t event = facing < 0.0 ? expected_event(material, draws[path], branches) : STOKES_EVENT_NONE;
     CHECK(result.kinds[entry] == event);
-    CHECK(after.fate == (event == STOKES_EVENT_NONE ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE));
+    const bool behind = facing > 0.0 && materials()[material].kind == STOKES_TRANSLUCENT;
+    const std::uint32_t end = behind ? STOKES_FATE_BEHIND : STOKES_FATE_ABSORBED;
+    CHECK(after.fate == (event == STOKES_EVENT_NONE ? end : STOKES_FATE_ALIVE));
     CHECK(static_cast<double>(after.absorbed.energy) == Approx(event == STOKES_EVENT_NONE ? total : 0.0).epsilon(1e-6));
 }
 

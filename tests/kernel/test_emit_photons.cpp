@@ -114,7 +114,12 @@ Emitted emit(std::uint32_t photons, std::uint32_t seed, const EmissionCells* cel
                                 .add("light_areas", on_device(areas))
                                 .add("triangles", on_device(all))
                                 .add("photon_flux", on_device(photon_flux()));
-    const Arguments paths = Arguments().add("rays", rays).add("flux", flux).add("ledgers", ledgers).add("list", list);
+    const Arguments paths = Arguments()
+                                .add("rays", rays)
+                                .add("departures", open_departures(room))
+                                .add("flux", flux)
+                                .add("ledgers", ledgers)
+                                .add("list", list);
     if (cells) {
         first = cells->first_photons(seed, pass_index);
         const Buffer<std::uint32_t> owners(test_device(), "cells", photons);
@@ -220,6 +225,7 @@ TEST_CASE("a light of a kind that nobody knows emits nothing", "[emit_photons][t
                        .add("triangles", on_device(triangles()))
                        .add("photon_flux", on_device(std::vector<Flux16>{constant_flux(1.0f)}))
                        .add("rays", on_device(std::vector<Ray>(1)))
+                       .add("departures", open_departures(1))
                        .add("flux", on_device(std::vector<Flux16>(1)))
                        .add("ledgers", ledgers)
                        .add("list", on_device(std::vector<std::uint32_t>(1))));

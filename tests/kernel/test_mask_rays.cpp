@@ -66,12 +66,14 @@ Aim aim_at(const Picture& picture, int count) {
 std::vector<Triangle> triangles_of(const Picture& picture) {
     Scene scene;
     Shape shape;
-    shape.body = 0;
+    shape.body = shape.material = 0;
+    scene.body_count = 1;
+    scene.materials = {{"black", BlackMaterial{}}};
     shape.two_sided = true;
     shape.mesh = make_mask(picture, columns, rows, {});
     transform_mesh(shape.mesh, placement());
     scene.shapes = {shape};
-    return scene_triangles(scene);
+    return scene_triangles(scene, find_contacts(scene, 0.0));
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ Retraced retrace(const Events& e, std::uint32_t component, std::uint32_t seed, s
                            .add("exit_flux", on_device(exit_flux))
                            .add("materials", on_device(materials))
                            .add("rays", rays)
+                           .add("departures", open_departures(count))
                            .add("flux", flux)
                            .add("ledgers", ledgers));
     return {rays.download(), flux.download(), ledgers.download()};
@@ -282,6 +283,7 @@ void check_branches(double kept_share) {
                            .add("exit_flux", on_device(exit_flux))
                            .add("materials", on_device(translucent_materials()))
                            .add("rays", rays)
+                           .add("departures", open_departures(paths))
                            .add("flux", flux)
                            .add("ledgers", ledgers));
     const Retraced r{rays.download(), flux.download(), ledgers.download()};

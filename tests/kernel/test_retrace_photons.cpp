@@ -52,6 +52,7 @@ Retraced retrace_elastic(const Deposited& d, std::uint32_t seed, std::uint32_t l
                            .add("exits", on_device(d.exits))
                            .add("materials", on_device(translucent_materials()))
                            .add("rays", rays)
+                           .add("departures", open_departures(d.flux.size()))
                            .add("flux", flux)
                            .add("ledgers", ledgers));
     return {rays.download(), flux.download(), ledgers.download()};
@@ -71,6 +72,7 @@ Retraced retrace_fluorescence(const Deposited& d, EventRound round, std::uint32_
                                  .add("spectra", on_device(translucent_spectra()))
                                  .add("exit_flux", on_device(d.exit_flux))
                                  .add("rays", rays)
+                                 .add("departures", open_departures(d.flux.size()))
                                  .add("flux", flux)
                                  .add("ledgers", ledgers));
     return {rays.download(), flux.download(), ledgers.download()};

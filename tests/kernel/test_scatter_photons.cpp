@@ -63,6 +63,7 @@ Scattered scatter(const Arrivals& a, EventRound round, std::size_t slots, std::u
                                  .add("texels", textures.texels)
                                  .add("texture_uv", textures.uv)
                                  .add("rays", rays)
+                                 .add("departures", open_departures(a.flux.size()))
                                  .add("flux", flux)
                                  .add("ledgers", ledgers)
                                  .add("map_heads", heads)

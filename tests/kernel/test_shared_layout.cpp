@@ -60,9 +60,10 @@ using namespace stokes;
         F(LightRecord, cumulative_probability) F(LightRecord, px) F(LightRecord, py) F(LightRecord, pz) \
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
         F(LightRecord, ball_mm) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, dimensions) \
-        F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, pad2) \
+        F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, inside) \
     S(EmissionCell) F(EmissionCell, low) F(EmissionCell, size) F(EmissionCell, probability) F(EmissionCell, light) \
         F(EmissionCell, stride) F(EmissionCell, pad) \
+    S(BodyRecord) F(BodyRecord, flags) F(BodyRecord, material) F(BodyRecord, inside) F(BodyRecord, pad) \
     S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) \
     S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, flags) F(MaterialRecord, transport) \
         F(MaterialRecord, medium) \
@@ -83,6 +84,8 @@ using namespace stokes;
     S(LedgerSums) F(LedgerSums, light) F(LedgerSums, fates) F(LedgerSums, missed_exits) F(LedgerSums, rays) \
         F(LedgerSums, reflections) F(LedgerSums, pad) \
     S(WalkSlots) F(WalkSlots, first) F(WalkSlots, limit) F(WalkSlots, pad) \
+    S(Departure) F(Departure, nx) F(Departure, ny) F(Departure, nz) F(Departure, body) F(Departure, inside) \
+        F(Departure, arrives) F(Departure, pad) \
     S(SurfacePoint) F(SurfacePoint, x) F(SurfacePoint, y) F(SurfacePoint, z) F(SurfacePoint, material) \
         F(SurfacePoint, nx) F(SurfacePoint, ny) F(SurfacePoint, nz) F(SurfacePoint, body) \
     S(EventSample) F(EventSample, first) F(EventSample, second) \
@@ -114,7 +117,7 @@ using namespace stokes;
         F(Probe, body) \
     S(Triangle) F(Triangle, v0x) F(Triangle, v0y) F(Triangle, v0z) F(Triangle, shape) F(Triangle, e1x) \
         F(Triangle, e1y) F(Triangle, e1z) F(Triangle, body) F(Triangle, e2x) F(Triangle, e2y) \
-        F(Triangle, e2z) F(Triangle, two_sided) \
+        F(Triangle, e2z) F(Triangle, flags) \
     S(TextureRecord) F(TextureRecord, width) F(TextureRecord, height) F(TextureRecord, first_texel) \
         F(TextureRecord, white_row) \
     S(TriangleUv) F(TriangleUv, u0) F(TriangleUv, v0) F(TriangleUv, u1) F(TriangleUv, v1) F(TriangleUv, u2) \

@@ -72,6 +72,11 @@ inline bool same_bits(const Flux16& a, const Flux16& b) { return std::memcmp(a.v
 inline glm::dvec3 origin_of(const Ray& ray) { return {ray.ox, ray.oy, ray.oz}; }
 inline glm::dvec3 direction_of(const Ray& ray) { return {ray.dx, ray.dy, ray.dz}; }
 
+// Of paths in the open that have met nothing yet.
+inline Buffer<Departure> open_departures(std::size_t paths) {
+    return on_device(std::vector<Departure>(paths, Departure{0.0f, 0.0f, 0.0f, STOKES_NONE, STOKES_NONE, 0, {0, 0}}));
+}
+
 // The account of a path that has just started with this flux.
 inline PathLedger open_ledger(const Flux16& flux) {
     PathLedger ledger{};

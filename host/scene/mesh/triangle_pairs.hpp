@@ -1,0 +1,50 @@
+// Pairs of triangles that are near one another.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace stokes {
+
+struct Box {
+    glm::dvec3 low{INFINITY}, high{-INFINITY};
+
+    void add(const glm::dvec3& p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    void add(const Box& box) {
+        low = glm::min(low, box.low);
+        high = glm::max(high, box.high);
+    }
+    // Whether two boxes come within a distance of one another; negative: whether they overlap by more than that.
+    bool meets(const Box& other, double distance) const {
+        return glm::all(glm::lessThanEqual(low - distance, other.high)) &&
+               glm::all(glm::lessThanEqual(other.low - distance, high));
+    }
+};
+
+// A triangle and what it is part of.
+struct BodyTriangle {
+    std::array<glm::dvec3, 3> corners;
+    Box box;
+    glm::dvec3 normal{0.0};  // unit length; zero where it has no area
+    int body = 0;
+    std::uint32_t index = 0;  // in the order of the scene's shapes
+};
+
+// Calls visit(a, b) once for each two triangles of different bodies whose boxes come within the distance. The order of
+// the triangles changes. O(n log n + pairs).
+void visit_near_pairs(std::vector<BodyTriangle>& triangles, double distance_mm,
+                      const std::function<void(const BodyTriangle&, const BodyTriangle&)>& visit);
+
+// Whether two triangles lie within a distance of one plane and overlap in it by more than the distance.
+bool share_a_plane(const BodyTriangle& a, const BodyTriangle& b, double distance_mm);
+
+// Whether two triangles pass through one another, each by more than the distance.
+bool cross_each_other(const BodyTriangle& a, const BodyTriangle& b, double distance_mm);
+
+}  // namespace stokes
