@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
 
 #include "host/commands/commands.hpp"
+#include "host/commands/outputs.hpp"
 #include "host/commands/progress.hpp"
+#include "host/core/console.hpp"
 #include "host/core/error.hpp"
 #include "host/render/transport/green_walk.hpp"
 #include "host/scene/readers/scene_reader.hpp"
@@ -37,9 +38,9 @@ void create_folder(const std::string& folder) {
 void write_tables(const std::vector<PowerTable>& tables, const std::string& material, const fs::path& folder) {
     for (const PowerTable& table : tables) {
         const std::string path = (folder / fmt::format("{}.{}.json", material, table.component)).string();
+        check_keeps_inputs({path});
         write_power_table(table, path);
-        fmt::print("{}\n", path);
-        std::fflush(stdout);
+        note(path + "\n");
     }
 }
 
@@ -51,10 +52,10 @@ void run_tables(const TablesOptions& options) {
         for (const Material& material : scene.materials) {
             if (medium_of(material) != static_cast<int>(i)) continue;
             if (tables.empty()) {
+                create_folder(options.output);
                 const Medium& m = scene.media[i];
                 const MediumSpectra medium{m.name, m.sigma_s, m.sigma_a, m.eta, m.dipole_eta};
                 tables = {make_fluorescence_table(medium), make_single_table(medium), make_multiple_table(medium)};
-                create_folder(options.output);
             }
             write_tables(tables, material.name, options.output);
             any = true;
@@ -67,9 +68,11 @@ void run_tables(const TablesOptions& options) {
 
 void run_green(const TablesOptions& options) {
     if (!options.scene.empty()) throw InputError("tables: expected a scene or --green, not both");
+    check_outputs({options.output}, "");
+    check_endings({{"-o with --green", options.output, ".json.gz"}});
     const Device device = Device::open(options.device, options.threads);
     write_green_table(make_green_table(device, options.eta, options.walks, print_share), options.output);
-    fmt::print("{}\n", options.output);
+    note(options.output + "\n");
 }
 
 }  // namespace
