@@ -123,7 +123,8 @@ void add_compare_command(CLI::App& app) {
         ->check(number_in(0.0, 1e12));
     CLI::Option* diff =
         command->add_option("--diff", options->diff_file, "Map of the error of --layer, or of the whole, in colours")
-            ->type_name("OUT.png");
+            ->type_name("OUT.png")
+            ->check(output_name());
     command
         ->add_option("--diff-max", options->diff_max,
                      "Error that has the map's last colour [cd/m^2]; default: the 99th percentile")

@@ -53,6 +53,8 @@ std::string lower(std::string text) {
 
 void check_endings(const std::vector<OutputName>& outputs) {
     for (const OutputName& output : outputs) {
+        if (output.file == "-")
+            throw InputError(fmt::format("{}: expected the name of a file, got \"-\"", output.flag));
         const std::string name = lower(fs::path(output.file).filename().string());
         const std::string ending = fs::path(name).extension().string();
         if (ending.size() < 2 || ends_with(name, output.ending)) continue;

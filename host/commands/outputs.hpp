@@ -23,8 +23,8 @@ struct OutputName {
     std::string flag, file, ending;  // "-o", "a.exr", ".exr"; an empty file stands for no output
 };
 
-// InputError when the name of a file ends as those of another format do, or is given and empty; a warning for an ending
-// that no format has. Letter case does not count, and a name without an ending is fine.
+// InputError when the name of a file ends as those of another format do, or is "-", which would become a file of that
+// name; a warning for an ending that no format has. Letter case does not count, and a name without an ending is fine.
 void check_endings(const std::vector<OutputName>& outputs);
 
 // Steps of which one that fails does not keep the next from being taken.

@@ -144,11 +144,14 @@ void add_probe_command(CLI::App& app) {
     command->add_option("--r-max", options->r_max_mm, "End of the last of them [mm]; default: from the material")
         ->type_name("MM")
         ->check(number_in(1e-9, 1e12));
-    command->add_option("--json", options->json_file, "All that was measured")->type_name("FILE.json");
+    command->add_option("--json", options->json_file, "All that was measured")
+        ->type_name("FILE.json")
+        ->check(output_name());
     command
         ->add_option("--matrix", options->matrix_file,
                      "Sweep the beam's wavelength too, and write the effective re-radiation matrix")
-        ->type_name("FILE.csv");
+        ->type_name("FILE.csv")
+        ->check(output_name());
     add_device_flags(*command, options->device);
     command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
     command->callback([command, options] { run_probe(*command, *options); });

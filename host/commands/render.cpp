@@ -134,15 +134,21 @@ void add_render_command(CLI::App& app) {
     const auto options = std::make_shared<RenderOptions>();
     command->add_option("scene", options->scene_file, "Scene file")->required()->type_name("SCENE.json");
     command->add_option("-o,--output", options->files.exr, "OpenEXR picture, one layer a component")
-        ->type_name("OUT.exr");
-    command->add_option("--png", options->files.png, "Picture for the screen")->type_name("OUT.png");
-    command->add_option("--stats", options->files.stats, "Figures of the render")->type_name("FILE.json");
+        ->type_name("OUT.exr")
+        ->check(output_name());
+    command->add_option("--png", options->files.png, "Picture for the screen")
+        ->type_name("OUT.png")
+        ->check(output_name());
+    command->add_option("--stats", options->files.stats, "Figures of the render")
+        ->type_name("FILE.json")
+        ->check(output_name());
     CLI::Option* reference =
         command->add_option("--rmse-against", options->reference_file, "Measure the error against this picture")
             ->type_name("REF.exr");
     CLI::Option* csv =
         command->add_option("--csv", options->files.csv, "Error after 1, 2, 4 .. passes, written while it renders")
             ->type_name("FILE.csv")
+            ->check(output_name())
             ->needs(reference);
     reference->needs(csv);
     command->add_option("--every", options->every, "Error after every N passes instead")

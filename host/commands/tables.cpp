@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "host/commands/commands.hpp"
+#include "host/commands/number_in.hpp"
 #include "host/commands/outputs.hpp"
 #include "host/commands/progress.hpp"
 #include "host/core/console.hpp"
@@ -86,7 +87,8 @@ void add_tables_command(CLI::App& app) {
     command
         ->add_option("-o,--output", options->output,
                      "Folder for the tables, created if it is not there; with --green, the file")
-        ->required();
+        ->required()
+        ->check(output_name());
     CLI::Option* green = command->add_flag("--green", options->green,
                                            "Compute the Green's function of a half-space by random walks (.json.gz)");
     command->add_option("--eta", options->eta, "Refractive index, 1 to 4")->needs(green);

@@ -62,6 +62,7 @@ const char* limit_text(char (&buffer)[size]) {
     return buffer;
 }
 
+bool watched = false;
 thread_local bool on_main_thread = false;
 
 bool in_foreign_code() { return ForeignCall::on_this_thread() || !on_main_thread; }
@@ -114,7 +115,18 @@ void watch_memory() {
     on_main_thread = true;
     std::set_new_handler(allocation_failed);
     std::set_terminate(exception_was_not_caught);
+    watched = true;
+    renew_memory_watch();
+}
+
+void renew_memory_watch() {
+    if (!watched) return;
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS}) std::signal(signal, program_died);
+}
+
+void check_memory_for_driver() {
+    constexpr std::uint64_t least = std::uint64_t{128} << 20;
+    if (smallest_limit().bytes < least) end_for_lack_of_memory("the OpenCL driver");
 }
 
 }  // namespace stokes

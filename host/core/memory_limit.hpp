@@ -19,4 +19,10 @@ std::string memory_limit_text();
 // leaves std::bad_alloc to be caught. To be called on the main thread.
 void watch_memory();
 
+// Takes the signals of a program that dies again: LLVM, in a driver, has put its own handlers in the way by then.
+void renew_memory_watch();
+
+// Ends the program, as above, where there is less memory than the least that PoCL starts with; it would abort.
+void check_memory_for_driver();
+
 }  // namespace stokes

@@ -21,13 +21,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::array<int, 4> watched = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
-constexpr auto patience = std::chrono::seconds(5);  // with a driver's call, or with a set-up
+constexpr auto patience_with_driver = std::chrono::seconds(1), patience_with_set_up = std::chrono::seconds(5);
 // `timeout` sends its signal to the program and to its group: the second is the same one.
 constexpr auto echo = std::chrono::milliseconds(300);
 
 std::atomic<int> caught{0};
 std::atomic<AtStake> stake{AtStake::nothing};
-sigset_t waited_for;
+sigset_t waited_for, ignored;
 
 [[noreturn]] void end_by(int signal) {
     remove_temporaries();
@@ -46,14 +46,14 @@ int next_signal(std::chrono::milliseconds wait) {
     const timespec time{static_cast<std::time_t>(wait.count() / 1000),
                         static_cast<long>(wait.count() % 1000 * 1000000)};
     const int signal = ::sigtimedwait(&waited_for, nullptr, &time);
-    return signal < 0 ? 0 : signal;
+    return signal < 0 || ::sigismember(&ignored, signal) == 1 ? 0 : signal;
 }
 
 // Ends the program when the first signal's time is up.
 void end_when_due(Clock::time_point first_at) {
-    const bool late = Clock::now() - first_at > patience;
-    if (stake == AtStake::nothing && (late || !ForeignCall::on_any_thread())) end_by(caught);
-    if (stake != AtStake::set_up || !late) return;
+    const Clock::duration since = Clock::now() - first_at;
+    if (stake == AtStake::nothing && (since > patience_with_driver || !ForeignCall::on_any_thread())) end_by(caught);
+    if (stake != AtStake::set_up || since < patience_with_set_up) return;
     tell(interrupted_in_set_up);
     end_by(caught);
 }
@@ -101,9 +101,11 @@ void* watch(void*) {
 
 void watch_signals() {
     ::sigemptyset(&waited_for);
+    ::sigemptyset(&ignored);
     for (const int signal : watched) {
         struct sigaction now {};
-        if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) ::sigaddset(&waited_for, signal);
+        ::sigaddset(&waited_for, signal);  // an ignored one as well: LLVM, in a driver, would put a handler in its way
+        if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) ::sigaddset(&ignored, signal);
     }
     sigset_t before;
     ::pthread_sigmask(SIG_BLOCK, &waited_for, &before);

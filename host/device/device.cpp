@@ -48,6 +48,7 @@ DeviceDescription describe(const cl::Platform& platform, const cl::Device& devic
 std::vector<Found> find_devices() {
     check_pocl_devices();
     prepare_pocl_cache();
+    check_memory_for_driver();
     std::vector<Found> result;
     try {
         std::vector<cl::Platform> platforms;
@@ -144,6 +145,7 @@ cl::Program Device::program(const std::string& source, const std::string& flags)
     const std::pair<std::string, std::string> key(source, flags);
     const auto known = shared_->programs.find(key);
     if (known != shared_->programs.end()) return known->second;
+    renew_memory_watch();
     const cl::Program program = in_driver([&] { return cl::Program(shared_->context, source); });
     in_driver([&] { return program.build(flags.c_str()); });
     return shared_->programs.emplace(key, program).first->second;
