@@ -70,8 +70,7 @@ Target target_of(const std::string& path) {
         target = split(path, link->front() == '/' ? *link : target.folder + *link);
     }
     struct stat there {};
-    if (exists &&
-        (::lstat(target.path().c_str(), &there) != 0 || there.st_ino != found.st_ino || there.st_dev != found.st_dev))
+    if (exists && ::lstat(target.path().c_str(), &there) != 0)
         fail(path, "not a regular file");  // a link of the kind of /dev/fd, to a file without a name
     if (exists) {
         check_may_be_replaced(target, found);
