@@ -12,7 +12,4 @@ void add_compare_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 void add_schema_command(CLI::App& app);
 
-// SIGINT or SIGTERM if one ended a render early, 0 otherwise.
-int interrupted_signal();
-
 }  // namespace stokes

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 
 #include "host/commands/commands.hpp"
 #include "host/commands/compare_output.hpp"
 #include "host/commands/number_in.hpp"
 #include "host/commands/outputs.hpp"
+#include "host/core/console.hpp"
 #include "host/core/error.hpp"
 #include "host/image/exr.hpp"
 #include "host/image/png.hpp"
@@ -72,6 +72,7 @@ void compare(const CLI::App& command, const CompareOptions& options) {
     check_outputs({options.diff_file}, "");
     check_keeps({options.diff_file}, options.picture_file, "a picture that is compared");
     check_keeps({options.diff_file}, options.reference_file, "a picture that is compared");
+    check_endings({{"--diff", options.diff_file, ".png"}});
     const ExrImage picture = read_exr(options.picture_file), reference = read_exr(options.reference_file);
     check_same_size(options, picture, reference);
     const std::vector<std::string> layers = chosen_layers(options, picture, reference);
@@ -95,10 +96,9 @@ void compare(const CLI::App& command, const CompareOptions& options) {
             draw_errors(pixel_errors(picture.layers.at(layer), reference.layers.at(layer)), picture.width, largest);
         write_map(comparison);
     }
-    fmt::print("{}", options.json ? comparison_json(comparison) : comparison_table(comparison));
+    print(options.json ? comparison_json(comparison) : comparison_table(comparison));
     if (!options.json && !options.diff_file.empty())
-        fmt::print("{}: {}\n", options.diff_file, scale_text(comparison.diff, comparison.diff_layer));
-    std::fflush(stdout);
+        print(fmt::format("{}: {}\n", options.diff_file, scale_text(comparison.diff, comparison.diff_layer)));
     const std::string complaint = comparison.complaint();
     if (!complaint.empty()) throw RunError(complaint);
 }
@@ -123,7 +123,8 @@ void add_compare_command(CLI::App& app) {
         ->check(number_in(0.0, 1e12));
     CLI::Option* diff =
         command->add_option("--diff", options->diff_file, "Map of the error of --layer, or of the whole, in colours")
-            ->type_name("OUT.png");
+            ->type_name("OUT.png")
+            ->check(output_name());
     command
         ->add_option("--diff-max", options->diff_max,
                      "Error that has the map's last colour [cd/m^2]; default: the 99th percentile")

@@ -24,4 +24,12 @@ CLI::Validator one_of_words(const std::vector<std::string>& words) {
     return CLI::Validator(check, fmt::format("{}", fmt::join(words, ", ")));
 }
 
+CLI::Validator output_name() {
+    return CLI::Validator(
+        [](const std::string& text) {
+            return std::string(text.empty() ? "expected the name of a file, got \"\"" : "");
+        },
+        "");
+}
+
 }  // namespace stokes

@@ -1,4 +1,4 @@
-// Numbers and words on the command line.
+// Numbers, words and names on the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,5 +13,8 @@ CLI::Validator number_in(double low, double high);
 
 // One of some words.
 CLI::Validator one_of_words(const std::vector<std::string>& words);
+
+// The name of an output: not empty, which a script's variable may be.
+CLI::Validator output_name();
 
 }  // namespace stokes

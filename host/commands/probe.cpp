@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "host/commands/progress.hpp"
 #include "host/commands/setting_flags.hpp"
 #include "host/core/atomic_file.hpp"
+#include "host/core/console.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
 #include "host/render/transport/transport_model.hpp"
@@ -81,7 +81,9 @@ std::vector<ProbeResult> sweep(HalfSpaceProbe& probe, bool quiet) {
 
 void run_probe(const CLI::App& command, const ProbeOptions& options) {
     check_source(command, options);
-    check_outputs({options.json_file, options.matrix_file}, options.scene_file);
+    const std::vector<std::string> outputs = {options.json_file, options.matrix_file};
+    check_outputs(outputs, options.scene_file);
+    check_endings({{"--json", options.json_file, ".json"}, {"--matrix", options.matrix_file, ".csv"}});
     ProbeMaterial material;
     Scene scene;
     if (options.scene_file.empty()) {
@@ -90,6 +92,7 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
         scene = read_scene(options.scene_file);
         material = probe_material(scene, options.material);
     }
+    check_keeps_inputs(outputs);
     read_settings(options.render, scene);
     const ProbeSettings settings = settings_of(command, options, scene.render);
     if (material.fresnel && !transport_model(settings.transport).has_fresnel())
@@ -98,17 +101,19 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
     HalfSpaceProbe probe(device, material, settings);
     const ProbeResult result = probe.measure(options.lambda_nm);
     warn_of_drops(result);
-    if (!options.quiet) {
-        fmt::print("{}", probe_table(result, material, settings));
-        std::fflush(stdout);
-    }
-    std::vector<ProbeResult> matrix;
-    if (!options.matrix_file.empty()) matrix = sweep(probe, options.quiet);
-    const auto write_json = [&] { write_file_atomically(options.json_file, probe_json(result, material, settings)); };
-    const auto write_matrix = [&] {
-        write_file_atomically(options.matrix_file, probe_matrix_csv(matrix, material, settings));
+    Attempts attempts;
+    std::string written;
+    const auto write = [&](const std::string& file, const auto& text) {
+        if (!file.empty() && attempts.take([&] { write_file_atomically(file, text()); })) written += file + "\n";
     };
-    write_outputs({{options.json_file, write_json}, {options.matrix_file, write_matrix}}, options.quiet);
+    write(options.json_file, [&] { return probe_json(result, material, settings); });
+    if (!options.quiet) attempts.take([&] { print(probe_table(result, material, settings)); });
+    if (!options.matrix_file.empty()) {
+        const std::vector<ProbeResult> matrix = sweep(probe, options.quiet);
+        write(options.matrix_file, [&] { return probe_matrix_csv(matrix, material, settings); });
+    }
+    if (!options.quiet) note(written);
+    attempts.finish();
 }
 
 }  // namespace
@@ -139,11 +144,14 @@ void add_probe_command(CLI::App& app) {
     command->add_option("--r-max", options->r_max_mm, "End of the last of them [mm]; default: from the material")
         ->type_name("MM")
         ->check(number_in(1e-9, 1e12));
-    command->add_option("--json", options->json_file, "All that was measured")->type_name("FILE.json");
+    command->add_option("--json", options->json_file, "All that was measured")
+        ->type_name("FILE.json")
+        ->check(output_name());
     command
         ->add_option("--matrix", options->matrix_file,
                      "Sweep the beam's wavelength too, and write the effective re-radiation matrix")
-        ->type_name("FILE.csv");
+        ->type_name("FILE.csv")
+        ->check(output_name());
     add_device_flags(*command, options->device);
     command->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
     command->callback([command, options] { run_probe(*command, *options); });

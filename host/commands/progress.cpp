@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
+
+#include "host/core/console.hpp"
 
 namespace stokes {
 
@@ -54,8 +55,12 @@ void print_share(double share) {
     const int percent = static_cast<int>(100.0 * share) / (terminal ? 1 : 10) * (terminal ? 1 : 10);
     if (percent == printed) return;
     printed = percent;
-    fmt::print(stderr, terminal ? "\r{:3d} %{}" : "{:3d} %{}", percent, !terminal || percent == 100 ? "\n" : "");
-    std::fflush(stderr);
+    const std::string text = fmt::format("{:3d} %", percent);
+    if (terminal)
+        show_line("\r" + text);
+    else
+        show_progress(text + "\n");
+    if (percent == 100) end_line();
 }
 
 Progress::Progress(std::uint32_t passes, bool quiet)
@@ -86,14 +91,12 @@ void Progress::update(std::uint32_t passes_done, std::uint64_t photons) {
 }
 
 void Progress::show(const std::string& line) {
-    std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", line.c_str());
-    std::fflush(stderr);
-    shown_ = terminal_;
+    if (terminal_)
+        show_line("\r\033[K" + line);
+    else
+        show_progress(line + "\n");
 }
 
-void Progress::finish() {
-    if (shown_) std::fputc('\n', stderr);
-    shown_ = false;
-}
+void Progress::finish() { end_line(); }
 
 }  // namespace stokes

@@ -52,7 +52,7 @@ class Progress {
     using Clock = std::chrono::steady_clock;
     void show(const std::string& line);
     std::uint32_t passes_;
-    bool quiet_, terminal_, shown_ = false;
+    bool quiet_, terminal_;
     Clock::time_point start_ = Clock::now(), last_;
     std::clock_t processor_start_ = std::clock();
 };

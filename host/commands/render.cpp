@@ -1,8 +1,5 @@
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <memory>
 
 #include "host/commands/commands.hpp"
@@ -12,8 +9,10 @@
 #include "host/commands/progress.hpp"
 #include "host/commands/render_outputs.hpp"
 #include "host/commands/setting_flags.hpp"
+#include "host/core/console.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
+#include "host/core/signals.hpp"
 #include "host/render/assumptions.hpp"
 #include "host/render/conflicts.hpp"
 #include "host/render/renderer.hpp"
@@ -24,13 +23,6 @@
 namespace stokes {
 
 namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
-
-extern "C" void catch_signal(int signal) {
-    if (caught_signal != 0) std::_Exit(128 + signal);  // a second one does not wait
-    caught_signal = signal;
-}
 
 struct RenderOptions {
     std::string scene_file, kernel_directory, reference_file;
@@ -52,7 +44,7 @@ Device open_device_for(const RenderOptions& options) {
 
 // None when a signal came meanwhile.
 std::unique_ptr<Renderer> set_up(Device& device, const Scene& scene) {
-    device.set_stop([] { return caught_signal != 0; });
+    device.set_stop([] { return caught_signal() != 0; });
     try {
         auto renderer = std::make_unique<Renderer>(device, scene);
         device.finish();
@@ -68,7 +60,7 @@ void render_passes(Renderer& renderer, const Device& device, int passes, Progres
         const double elapsed_s = progress.elapsed_s();
         progress.pause([&] { curve->add(renderer.passes(), elapsed_s, renderer.image()); });
     };
-    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(passes) && caught_signal == 0; ++pass) {
+    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(passes) && caught_signal() == 0; ++pass) {
         renderer.render_pass(pass);
         device.finish();
         progress.update(pass + 1, renderer.book().photons());
@@ -92,6 +84,11 @@ void render(const RenderOptions& options) {
         throw InputError("render: expected an output, -o OUT.exr, --png OUT.png, --stats FILE.json or --csv FILE.csv");
     check_outputs(outputs, options.scene_file);
     check_keeps(outputs, options.reference_file, "the reference");
+    check_endings({{"-o", options.files.exr, ".exr"},
+                   {"--png", options.files.png, ".png"},
+                   {"--stats", options.files.stats, ".json"},
+                   {"--csv", options.files.csv, ".csv"}});
+    set_at_stake(AtStake::set_up);
     const Scene scene = read_scene(options.scene_file, options.settings);
     for (const Transport transport : transports_of(scene)) transport_model(transport).check(scene);
     for (const std::string& line : find_conflicts(scene)) warn(line);
@@ -99,19 +96,18 @@ void render(const RenderOptions& options) {
     for (const Transport transport : transports_of(scene))
         for (const std::string& line : transport_model(transport).remarks(scene)) warn(line);
     for (const std::string& line : failed_assumptions(scene)) warn(line);
-    std::signal(SIGINT, catch_signal);
-    std::signal(SIGTERM, catch_signal);
+    check_keeps_inputs(outputs);
     Device device = open_device_for(options);
     Progress progress(static_cast<std::uint32_t>(scene.render.passes), options.quiet);
     progress.preparing();
     const std::unique_ptr<Renderer> renderer = set_up(device, scene);
     const double set_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress.start();
+    if (renderer) set_at_stake(AtStake::passes);
     if (renderer) render_passes(*renderer, device, scene.render.passes, progress, curve.get());
     const double wall_s = progress.elapsed_s(), processor_s = progress.processor_s();
     if (!renderer || renderer->passes() == 0) {
-        progress.finish();
-        fmt::print(stderr, "stokes: interrupted before the first pass: nothing was written\n");
+        tell(interrupted_in_set_up);
         return;
     }
     const FilmImage film = renderer->image();
@@ -119,29 +115,42 @@ void render(const RenderOptions& options) {
     stats.wall_s = wall_s;
     stats.processor_s = processor_s;
     stats.set_up_s = set_up_s;
-    if (!options.quiet) say_what_was_dropped(stats);
-    warn_about(stats.ledger);
-    write_results(options.files, scene, film, stats, curve.get(), options.quiet);
+    const auto words = [&] {
+        if (!options.quiet) say_what_was_dropped(stats);
+        warn_about(stats.ledger);
+        warn_about(film);
+    };
+    try {
+        write_results(options.files, scene, film, stats, curve.get(), options.quiet);
+    } catch (...) {
+        words();
+        throw;
+    }
+    words();
 }
 
 }  // namespace
-
-int interrupted_signal() { return caught_signal; }
 
 void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Render a scene");
     const auto options = std::make_shared<RenderOptions>();
     command->add_option("scene", options->scene_file, "Scene file")->required()->type_name("SCENE.json");
     command->add_option("-o,--output", options->files.exr, "OpenEXR picture, one layer a component")
-        ->type_name("OUT.exr");
-    command->add_option("--png", options->files.png, "Picture for the screen")->type_name("OUT.png");
-    command->add_option("--stats", options->files.stats, "Figures of the render")->type_name("FILE.json");
+        ->type_name("OUT.exr")
+        ->check(output_name());
+    command->add_option("--png", options->files.png, "Picture for the screen")
+        ->type_name("OUT.png")
+        ->check(output_name());
+    command->add_option("--stats", options->files.stats, "Figures of the render")
+        ->type_name("FILE.json")
+        ->check(output_name());
     CLI::Option* reference =
         command->add_option("--rmse-against", options->reference_file, "Measure the error against this picture")
             ->type_name("REF.exr");
     CLI::Option* csv =
         command->add_option("--csv", options->files.csv, "Error after 1, 2, 4 .. passes, written while it renders")
             ->type_name("FILE.csv")
+            ->check(output_name())
             ->needs(reference);
     reference->needs(csv);
     command->add_option("--every", options->every, "Error after every N passes instead")

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/commands/outputs.hpp"
+#include "host/core/console.hpp"
 #include "host/core/log.hpp"
 #include "host/image/develop.hpp"
 #include "host/image/exr.hpp"
@@ -86,14 +87,16 @@ void say_what_was_dropped(const RenderStats& stats) {
     for (const auto& [cause, count] : stats.dropped)
         if (count > 0) causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", count, cause);
     if (!causes.empty())
-        fmt::print(stderr, "dropped: {} of {} deposits and {} photons\n", causes, stats.deposits,
-                   stats.photons_emitted);
+        tell(fmt::format("dropped: {} of {} deposits and {} photons\n", causes, stats.deposits, stats.photons_emitted));
+}
+
+void warn_about(const FilmImage& film) {
+    if (const std::size_t bad = count_non_finite(film))
+        warn(fmt::format("{} pixels are not finite and are shown black", bad));
 }
 
 void write_results(const OutputFiles& files, const Scene& scene, const FilmImage& film, const RenderStats& stats,
                    const ErrorCurve* curve, bool quiet) {
-    if (const std::size_t bad = count_non_finite(film))
-        warn(fmt::format("{} pixels are not finite and are shown black", bad));
     const double exposure = scene.film.exposure_ev ? *scene.film.exposure_ev : automatic_exposure_ev(film);
     const auto write_picture = [&] { write_exr(files.exr, film, exr_metadata(scene, stats, exposure)); };
     const auto write_developed = [&] {

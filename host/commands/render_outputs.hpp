@@ -19,6 +19,9 @@ RenderStats collect_stats(const Scene& scene, const Device& device, const Render
 
 void say_what_was_dropped(const RenderStats& stats);
 
+// Warns of pixels that are not finite.
+void warn_about(const FilmImage& film);
+
 // curve: of the CSV file, if there is one. RunError when one cannot be written, as write_outputs.
 void write_results(const OutputFiles& files, const Scene& scene, const FilmImage& film, const RenderStats& stats,
                    const ErrorCurve* curve, bool quiet);

@@ -1,11 +1,10 @@
 #include "host/scene/settings/schema.hpp"
 
-#include <fmt/core.h>
-
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "host/commands/commands.hpp"
+#include "host/core/console.hpp"
 
 namespace stokes {
 
@@ -16,9 +15,9 @@ void add_schema_command(CLI::App& app) {
     command->add_flag("--table", *table, "Print the settings in its place, as scenes/README.md has them");
     command->callback([settings, table] {
         if (*table)
-            fmt::print("{}", settings_table());
+            print(settings_table());
         else
-            fmt::print("{}\n", as_lines(*settings ? settings_as_json() : scene_schema()));
+            print(as_lines(*settings ? settings_as_json() : scene_schema()) + "\n");
     });
 }
 

@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
 
 #include "host/commands/commands.hpp"
+#include "host/commands/number_in.hpp"
+#include "host/commands/outputs.hpp"
 #include "host/commands/progress.hpp"
+#include "host/core/console.hpp"
 #include "host/core/error.hpp"
 #include "host/render/transport/green_walk.hpp"
 #include "host/scene/readers/scene_reader.hpp"
@@ -37,9 +39,9 @@ void create_folder(const std::string& folder) {
 void write_tables(const std::vector<PowerTable>& tables, const std::string& material, const fs::path& folder) {
     for (const PowerTable& table : tables) {
         const std::string path = (folder / fmt::format("{}.{}.json", material, table.component)).string();
+        check_keeps_inputs({path});
         write_power_table(table, path);
-        fmt::print("{}\n", path);
-        std::fflush(stdout);
+        note(path + "\n");
     }
 }
 
@@ -51,10 +53,10 @@ void run_tables(const TablesOptions& options) {
         for (const Material& material : scene.materials) {
             if (medium_of(material) != static_cast<int>(i)) continue;
             if (tables.empty()) {
+                create_folder(options.output);
                 const Medium& m = scene.media[i];
                 const MediumSpectra medium{m.name, m.sigma_s, m.sigma_a, m.eta, m.dipole_eta};
                 tables = {make_fluorescence_table(medium), make_single_table(medium), make_multiple_table(medium)};
-                create_folder(options.output);
             }
             write_tables(tables, material.name, options.output);
             any = true;
@@ -67,9 +69,11 @@ void run_tables(const TablesOptions& options) {
 
 void run_green(const TablesOptions& options) {
     if (!options.scene.empty()) throw InputError("tables: expected a scene or --green, not both");
+    check_outputs({options.output}, "");
+    check_endings({{"-o with --green", options.output, ".json.gz"}});
     const Device device = Device::open(options.device, options.threads);
     write_green_table(make_green_table(device, options.eta, options.walks, print_share), options.output);
-    fmt::print("{}\n", options.output);
+    note(options.output + "\n");
 }
 
 }  // namespace
@@ -83,7 +87,8 @@ void add_tables_command(CLI::App& app) {
     command
         ->add_option("-o,--output", options->output,
                      "Folder for the tables, created if it is not there; with --green, the file")
-        ->required();
+        ->required()
+        ->check(output_name());
     CLI::Option* green = command->add_flag("--green", options->green,
                                            "Compute the Green's function of a half-space by random walks (.json.gz)");
     command->add_option("--eta", options->eta, "Refractive index, 1 to 4")->needs(green);

@@ -6,13 +6,17 @@
 
 namespace stokes {
 
-// Writes content to PATH.tmp in the same folder, flushes it to the disk and renames it to path, so that path
-// never holds half a file and keeps what it held when writing fails. A symbolic link is written through.
-// Throws RunError with path and reason, the temporary removed; also when path is there but is no regular
-// file.
+// Writes content to a new file of a name that nothing else has, in the same folder, flushes it to the disk and renames
+// it to path, so that path never holds half a file and keeps what it held when writing fails. A file that was there
+// gives its permissions. A symbolic link is written through, also one that leads to nothing yet.
+// Throws RunError with path and reason, the new file removed; also when path is there and is no regular file, or one
+// that may not be written.
 void write_file_atomically(const std::string& path, std::string_view content);
 
-// Throws RunError, as write_file_atomically(path, ...) would, where PATH.tmp cannot be made; leaves no file.
+// Throws RunError, as write_file_atomically(path, ...) would, where the new file cannot be made; leaves no file.
 void check_can_be_written(const std::string& path);
+
+// Removes the files that are being written, for a program that ends at once. Any thread may call it.
+void remove_temporaries();
 
 }  // namespace stokes

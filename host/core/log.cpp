@@ -1,8 +1,9 @@
 #include "host/core/log.hpp"
 
-#include <cstdio>
 #include <mutex>
 #include <set>
+
+#include "host/core/console.hpp"
 
 namespace stokes {
 
@@ -10,7 +11,7 @@ void warn(const std::string& text) {
     static std::mutex mutex;
     static std::set<std::string> said;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (said.insert(text).second) std::fprintf(stderr, "stokes: warning: %s\n", text.c_str());
+    if (said.insert(text).second) tell("stokes: warning: " + text + "\n");
 }
 
 }  // namespace stokes

@@ -8,7 +8,9 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -16,6 +18,9 @@
 
 namespace stokes {
 namespace {
+
+std::mutex read_mutex;
+std::set<std::string> read_so_far;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
@@ -34,6 +39,20 @@ std::optional<T> parse_whole(std::string_view token) {
     return value;
 }
 
+// Bytes of the UTF-8 character at the start of a text that is not empty; 0 where there is none or a control character.
+std::size_t character_size(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    const unsigned first = byte(0);
+    if (first < 0x80) return first < 32 || first == 127 ? 0 : 1;
+    const std::size_t size = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+    for (std::size_t i = 1; i < size; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    const bool too_long = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
+    const bool no_character = (first == 0xed && byte(1) >= 0xa0) || (first == 0xf4 && byte(1) >= 0x90);
+    const bool control = first == 0xc2 && byte(1) < 0xa0;
+    return too_long || no_character || control ? 0 : size;
+}
+
 std::string room_for(std::uintmax_t size, const std::string& path) {
     std::string text;
     try {
@@ -48,6 +67,10 @@ std::string room_for(std::uintmax_t size, const std::string& path) {
 }  // namespace
 
 std::string read_file(const std::string& path) {
+    {
+        const std::lock_guard<std::mutex> lock(read_mutex);
+        read_so_far.insert(path);
+    }
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
     if (error || !std::filesystem::is_regular_file(path)) {
@@ -62,17 +85,25 @@ std::string read_file(const std::string& path) {
     return text;
 }
 
+std::set<std::string> files_read() {
+    const std::lock_guard<std::mutex> lock(read_mutex);
+    return read_so_far;
+}
+
 std::optional<double> parse_double(std::string_view token) { return parse_whole<double>(token); }
 
 std::optional<std::int64_t> parse_integer(std::string_view token) { return parse_whole<std::int64_t>(token); }
 
 std::string printable(std::string_view text) {
-    constexpr std::size_t longest = 40;
-    std::string result(text.substr(0, longest));
-    for (char& c : result) {
-        if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+    constexpr int longest = 40;
+    std::string result;
+    for (int characters = 0; !text.empty(); ++characters) {
+        if (characters == longest) return result + "...";
+        const std::size_t size = character_size(text);
+        result += size == 0 ? "?" : text.substr(0, size);
+        text.remove_prefix(std::max<std::size_t>(size, 1));
     }
-    return text.size() > longest ? result + "..." : result;
+    return result;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {

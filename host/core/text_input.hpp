@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -12,12 +13,16 @@ namespace stokes {
 // memory.
 std::string read_file(const std::string& path);
 
+// The paths that read_file() was asked for so far: what an output must not replace.
+std::set<std::string> files_read();
+
 // A whole token as a number, in the C locale whatever the environment says; "nan" and "inf" parse, so callers
 // check std::isfinite. None: not a number, or something follows it.
 std::optional<double> parse_double(std::string_view token);
 std::optional<std::int64_t> parse_integer(std::string_view token);
 
-// Text from a file, made fit for a one-line message: control characters replaced, cut after 40 characters.
+// Text from a file, made fit for a one-line message: control characters and bytes that are no UTF-8 replaced, cut after
+// 40 characters.
 std::string printable(std::string_view text);
 
 // The candidate that was probably meant by name (a slip of a letter or two, another case, a missing unit), or

@@ -3,12 +3,19 @@
 #include <cstdlib>
 
 #include "host/device/device.hpp"
+#include "host/device/driver_call.hpp"
 
 namespace stokes {
 
 namespace {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
+
+// What the system allows, where that is little.
+std::string memory_note() {
+    const std::string limit = memory_limit_text();
+    return limit.empty() ? limit : "; " + limit;
+}
 
 std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB"; }
 
@@ -32,15 +39,17 @@ Allocation::Allocation(const Device& device, const std::string& name, std::size_
             const std::size_t alignment = bytes >= huge_page ? huge_page : 4096;
             const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
             owner_->host = std::aligned_alloc(alignment, rounded);
-            if (owner_->host == nullptr) throw RunError("out of memory for " + name + ", " + mebibytes(bytes));
+            if (owner_->host == nullptr)
+                throw RunError("out of memory for " + name + ", " + mebibytes(bytes) + memory_note());
             if (alignment == huge_page) ::madvise(owner_->host, rounded, MADV_HUGEPAGE);
-            owner_->buffer = cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, owner_->host);
+            owner_->buffer = in_driver([&] {
+                return cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, owner_->host);
+            });
         } else {
-            owner_->buffer = cl::Buffer(device.context(), CL_MEM_READ_WRITE, bytes);
+            owner_->buffer = in_driver([&] { return cl::Buffer(device.context(), CL_MEM_READ_WRITE, bytes); });
         }
     } catch (const cl::Error& error) {
-        throw RunError("device memory: " + name + ", " + mebibytes(bytes) + ": OpenCL error " +
-                       std::to_string(error.err()));
+        driver_failed("device memory: " + name + ", " + mebibytes(bytes), error);
     }
     owner_->bytes = bytes;
     shared.memory_in_use += bytes;
@@ -56,23 +65,29 @@ Allocation::Owner::~Owner() {
 }
 
 void Allocation::write(const void* data, std::size_t bytes, std::size_t offset) const {
-    const cl_int error = ::clEnqueueWriteBuffer(owner_->device.queue()(), owner_->buffer(), CL_TRUE, offset, bytes,
-                                                data, 0, nullptr, nullptr);
+    const cl_int error = in_driver([&] {
+        return ::clEnqueueWriteBuffer(owner_->device.queue()(), owner_->buffer(), CL_TRUE, offset, bytes, data, 0,
+                                      nullptr, nullptr);
+    });
     if (error != CL_SUCCESS)
         throw RunError("writing " + owner_->name + " failed, OpenCL error " + std::to_string(error));
 }
 
 void Allocation::read(void* data, std::size_t bytes, std::size_t offset) const {
-    const cl_int error = ::clEnqueueReadBuffer(owner_->device.queue()(), owner_->buffer(), CL_TRUE, offset, bytes, data,
-                                               0, nullptr, nullptr);
+    const cl_int error = in_driver([&] {
+        return ::clEnqueueReadBuffer(owner_->device.queue()(), owner_->buffer(), CL_TRUE, offset, bytes, data, 0,
+                                     nullptr, nullptr);
+    });
     if (error != CL_SUCCESS)
         throw RunError("reading " + owner_->name + " failed, OpenCL error " + std::to_string(error));
     owner_->device.shared_->bytes_read += bytes;
 }
 
 void Allocation::copy_to(const Allocation& target, std::size_t bytes) const {
-    const cl_int error = ::clEnqueueCopyBuffer(owner_->device.queue()(), owner_->buffer(), target.owner_->buffer(), 0,
-                                               0, bytes, 0, nullptr, nullptr);
+    const cl_int error = in_driver([&] {
+        return ::clEnqueueCopyBuffer(owner_->device.queue()(), owner_->buffer(), target.owner_->buffer(), 0, 0, bytes,
+                                     0, nullptr, nullptr);
+    });
     if (error != CL_SUCCESS)
         throw RunError("copying " + owner_->name + " failed, OpenCL error " + std::to_string(error));
 }

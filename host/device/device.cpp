@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "host/device/driver_call.hpp"
 #include "host/device/pocl.hpp"
-#include "host/device/signals.hpp"
 
 namespace stokes {
 
@@ -48,15 +48,15 @@ DeviceDescription describe(const cl::Platform& platform, const cl::Device& devic
 std::vector<Found> find_devices() {
     check_pocl_devices();
     prepare_pocl_cache();
-    const SignalsHeldBack held_back;  // also in the driver's threads, which begin here and compile later
+    check_memory_for_driver();
     std::vector<Found> result;
     try {
         std::vector<cl::Platform> platforms;
-        cl::Platform::get(&platforms);
+        in_driver([&] { return cl::Platform::get(&platforms); });
         for (std::size_t p = 0; p < platforms.size(); ++p) {
             std::vector<cl::Device> devices;
             try {
-                platforms[p].getDevices(CL_DEVICE_TYPE_ALL, &devices);
+                in_driver([&] { return platforms[p].getDevices(CL_DEVICE_TYPE_ALL, &devices); });
             } catch (const cl::Error& error) {
                 if (error.err() != CL_DEVICE_NOT_FOUND) throw;
             }
@@ -64,10 +64,9 @@ std::vector<Found> find_devices() {
                 result.push_back({describe(platforms[p], devices[d], p, d), devices[d]});
         }
     } catch (const cl::Error& error) {
-        if (error.err() != -1001)
-            throw RunError("OpenCL: " + std::string(error.what()) + " failed with error " +
-                           std::to_string(error.err()));
+        if (error.err() != -1001) driver_failed("OpenCL", error);
     }
+    if (result.empty() && memory_is_short()) end_for_lack_of_memory("no OpenCL device was found");
     if (result.empty())
         throw RunError("no OpenCL device was found; install a driver, for the CPU the package pocl-opencl-icd");
     return result;
@@ -86,8 +85,9 @@ const Found& choose(const std::vector<Found>& found, const std::string& selector
     if (match != found.end()) return *match;
     if (wanted.empty()) return found.front();
     std::string known;
-    for (const Found& f : found) known += "\n  " + f.description.selector + "  " + f.description.name;
-    throw InputError("--device: no device matches \"" + selector + "\"; there are:" + known);
+    for (const Found& f : found)
+        known += (known.empty() ? "" : ", ") + f.description.selector + " " + f.description.name;
+    throw InputError("--device: no device matches \"" + selector + "\"; there are: " + known);
 }
 
 }  // namespace
@@ -122,11 +122,11 @@ Device Device::open(const std::string& selector, int threads) {
     shared.description = chosen.description;
     shared.device = chosen.device;
     try {
-        shared.context = cl::Context(chosen.device);
-        shared.queue = cl::CommandQueue(shared.context, chosen.device, CL_QUEUE_PROFILING_ENABLE);
+        shared.context = in_driver([&] { return cl::Context(chosen.device); });
+        shared.queue =
+            in_driver([&] { return cl::CommandQueue(shared.context, chosen.device, CL_QUEUE_PROFILING_ENABLE); });
     } catch (const cl::Error& error) {
-        throw RunError(shared.description.name + ": " + error.what() + " failed with OpenCL error " +
-                       std::to_string(error.err()));
+        driver_failed(shared.description.name, error);
     }
     shared.memory_budget = shared.description.memory_bytes / 4 * 3;
     return result;
@@ -134,9 +134,9 @@ Device Device::open(const std::string& selector, int threads) {
 
 void Device::finish() const {
     try {
-        shared_->queue.finish();
+        in_driver([&] { return shared_->queue.finish(); });
     } catch (const cl::Error& error) {
-        throw RunError(shared_->description.name + ": a kernel failed, OpenCL error " + std::to_string(error.err()));
+        driver_failed(shared_->description.name + ": a kernel failed", error);
     }
     collect();
 }
@@ -145,8 +145,9 @@ cl::Program Device::program(const std::string& source, const std::string& flags)
     const std::pair<std::string, std::string> key(source, flags);
     const auto known = shared_->programs.find(key);
     if (known != shared_->programs.end()) return known->second;
-    const cl::Program program(shared_->context, source);
-    program.build(flags.c_str());
+    renew_memory_watch();
+    const cl::Program program = in_driver([&] { return cl::Program(shared_->context, source); });
+    in_driver([&] { return program.build(flags.c_str()); });
     return shared_->programs.emplace(key, program).first->second;
 }
 

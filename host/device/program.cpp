@@ -1,5 +1,5 @@
+#include "host/device/driver_call.hpp"
 #include "host/device/kernel.hpp"
-#include "host/device/signals.hpp"
 
 namespace stokes {
 
@@ -21,23 +21,25 @@ void Program::build(const std::string& name, const std::string& text, const std:
     std::string flags = "-cl-std=CL1.2";
     for (const std::string& option : options) flags += " " + option;
     source_ = expand_kernel_source(name, text, device_.kernel_directory());
-    const SignalsHeldBack held_back;
     try {
         program_ = device_.program(source_, flags);
     } catch (const cl::BuildError& error) {
         std::string log;
         for (const auto& entry : error.getBuildLog()) log += entry.second;
+        if (memory_is_short() && log.find("error: ") == std::string::npos)
+            end_for_lack_of_memory(("kernels/" + name + " does not compile").c_str());
         throw RunError("kernels/" + name + " does not compile on " + device_.description().name + ":\n" + log);
     } catch (const cl::Error& error) {
-        throw RunError("kernels/" + name + ": " + error.what() + " failed with OpenCL error " +
-                       std::to_string(error.err()));
+        driver_failed("kernels/" + name, error);
     }
 }
 
 Kernel Program::kernel(const std::string& name) const {
     try {
-        return Kernel(device_, cl::Kernel(program_, name.c_str()), name, kernel_arguments(source_, name));
+        const cl::Kernel kernel = in_driver([&] { return cl::Kernel(program_, name.c_str()); });
+        return Kernel(device_, kernel, name, kernel_arguments(source_, name));
     } catch (const cl::Error& error) {
+        if (memory_is_short()) driver_failed("kernels/" + file_ + ", kernel " + name, error);
         throw RunError("kernels/" + file_ + " has no kernel " + name + " (OpenCL error " + std::to_string(error.err()) +
                        ")");
     }
@@ -81,14 +83,15 @@ void Kernel::enqueue(std::size_t work_items) const {
     const std::size_t local = device_.local_size();
     const std::size_t global = (work_items + local - 1) / local * local;
     device_.check_stop();
-    const SignalsHeldBack held_back;  // a first launch compiles
     try {
         cl::Event event;
-        device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr,
-                                             &event);
+        in_driver([&] {
+            return device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(global), cl::NDRange(local),
+                                                        nullptr, &event);
+        });
         device_.record(name_, event);
     } catch (const cl::Error& error) {
-        throw RunError("kernel " + name_ + " could not be launched, OpenCL error " + std::to_string(error.err()));
+        driver_failed("kernel " + name_ + " could not be launched", error);
     }
 }
 

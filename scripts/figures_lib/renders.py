@@ -116,7 +116,7 @@ class Renderer:
     def _render(self, job, scene, words, flags, files):
         scene = dict(scene, comment=f"As rendered for {job.name}.")
         files["scene.json"].write_text(json.dumps(scene, indent=1), encoding="utf-8")
-        stats = files["json"].with_suffix(".stats")
+        stats = files["json"].with_suffix(".stats.json")
         command = [
             str(self.stokes),
             "render",

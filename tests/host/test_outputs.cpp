@@ -3,6 +3,7 @@
 #include "host/commands/outputs.hpp"
 #include "host/core/atomic_file.hpp"
 #include "host/core/error.hpp"
+#include "host/core/text_input.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -54,4 +55,44 @@ TEST_CASE("one output that fails does not lose the others", "[outputs]") {
                       true),
         Contains("none/a: cannot write"));
     CHECK(folder.names() == std::vector<std::string>{"b", "d"});
+}
+
+TEST_CASE("a name that belongs to another format is refused", "[outputs]") {
+    const auto error_of = [](const OutputName& output) { return input_error([&] { check_endings({output}); }); };
+    CHECK(error_of({"-o", "a/b.png", ".exr"}) ==
+          "a/b.png: -o writes an OpenEXR picture; expected a name that ends in .exr");
+    for (const OutputName& wrong : std::vector<OutputName>{{"--png", "x.jpg", ".png"},
+                                                           {"--png", "x.JPEG", ".png"},
+                                                           {"--png", "x.exr", ".png"},
+                                                           {"-o", "x.hdr", ".exr"},
+                                                           {"-o", "x.exr.gz", ".exr"},
+                                                           {"--stats", "x.csv", ".json"},
+                                                           {"--csv", "x.json", ".csv"},
+                                                           {"--csv", "x.txt", ".csv"},
+                                                           {"-o", "g.json", ".json.gz"}}) {
+        CAPTURE(wrong.file);
+        CHECK_THAT(error_of(wrong), Contains(wrong.file + ": ") && Contains("ends in " + wrong.ending));
+    }
+    CHECK_THAT(error_of({"--stats", "-", ".json"}), Contains("--stats: expected the name of a file"));
+    for (const OutputName& right : std::vector<OutputName>{{"-o", "x.exr", ".exr"},
+                                                           {"-o", "x.EXR", ".exr"},
+                                                           {"-o", "x.png/y", ".exr"},
+                                                           {"-o", "plain", ".exr"},
+                                                           {"-o", "", ".exr"},
+                                                           {"-o", "g.json.gz", ".json.gz"},
+                                                           {"--png", "2024.11.28.png", ".png"}}) {
+        CAPTURE(right.file);
+        CHECK_NOTHROW(check_endings({right}));
+    }
+}
+
+TEST_CASE("no output replaces a file that was read", "[outputs]") {
+    const TemporaryFolder folder;
+    put_file(folder.file("lamp.csv"), "x");
+    read_file(folder.path() + "/./lamp.csv");
+    CHECK_THAT(input_error([&] {
+                   check_keeps_inputs({folder.file("b.csv"), folder.file("lamp.csv")});
+               }),
+               Contains("lamp.csv: this output would replace a file that is read"));
+    CHECK_NOTHROW(check_keeps_inputs({folder.file("b.csv"), ""}));
 }

@@ -19,10 +19,10 @@ class InputFiles {
 
     const std::filesystem::path& folder() const { return folder_; }
 
-    // The file named here. Throws InputError at this place of the scene, also where the memory does not
-    // suffice.
+    // The file named here, by the name as the system takes it: ".." after a symbolic link leaves the folder that the
+    // link leads to. Throws InputError at this place of the scene, also where the memory does not suffice.
     const Content& read(const JsonCursor& file) {
-        const std::string path = (folder_ / file.text()).lexically_normal().string();
+        const std::string path = (folder_ / file.text()).string();
         const auto found = contents_.find(path);
         if (found != contents_.end()) return found->second;
         try {
