@@ -34,8 +34,8 @@ bool has_lone_returns(std::string_view text) {
 }
 
 std::string crossing_remark(const std::string& place, std::size_t faces) {
-    return fmt::format("{}: this face{} itself, so parts of {} may overlap or be seen from behind", place,
-                       faces == 1 ? " crosses" : fmt::format(" and {} more cross", faces - 1),
+    return fmt::format("{}: this face {}, so parts of {} may overlap or be seen from behind", place,
+                       faces == 1 ? "crosses itself" : fmt::format("and {} more cross themselves", faces - 1),
                        faces == 1 ? "it" : "them");
 }
 

@@ -201,9 +201,10 @@ std::vector<int> materials_of_file(const ObjectReader& where, const FileMesh& me
         index_of_name(material, "materials", scene.materials);
         if (std::find(mesh.materials.begin(), mesh.materials.end(), name) != mesh.materials.end()) continue;
         const std::string closest = closest_name(name, mesh.materials);
-        material.fail(fmt::format("the mesh has no material \"{}\"{}; it has {}", printable(name),
-                                  closest.empty() ? "" : "; did you mean \"" + closest + "\"?",
-                                  mesh.materials == std::vector<std::string>{""} ? "none" : quoted(mesh.materials)));
+        const bool has_none = mesh.materials == std::vector<std::string>{""};
+        material.fail(fmt::format("the mesh has no material \"{}\"; {}", printable(name),
+                                  closest.empty() ? "it has " + (has_none ? "none" : quoted(mesh.materials))
+                                                  : "did you mean \"" + closest + "\"?"));
     }
     return materials;
 }
