@@ -199,3 +199,19 @@ TEST_CASE("The materials and objects of an OBJ file are known by name", "[mesh_d
     CHECK(mesh.material == std::vector<std::uint32_t>{0, 1, 1, 2, 1});
     CHECK(mesh.objects == 2);
 }
+
+// Singles have steps of 0.5 at 4e6, doubles of 5e-10.
+TEST_CASE("PLY coordinates that single precision has made coarse are told", "[mesh_dialects]") {
+    const auto text = [](const std::string& type, const std::string& x) {
+        std::string xyz;
+        for (const char* axis : {"x", "y", "z"}) xyz += "property " + type + " " + axis + "\n";
+        return "ply\nformat ascii 1.0\nelement vertex 3\n" + xyz +
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + x + " 0 0\n" + x + " 100 0\n" +
+               x + " 0 50\n3 0 1 2\n";
+    };
+    CHECK_THAT(
+        parse_ply(text("float", "4080928"), "m.ply").remarks.at(0),
+        StartsWith("m.ply: its coordinates are in single precision (float) with steps of 0.49, far from their origin"));
+    CHECK(parse_ply(text("double", "4080928"), "m.ply").remarks.empty());
+    CHECK(parse_ply(text("float", "4080"), "m.ply").remarks.empty());
+}

@@ -25,13 +25,15 @@ void warn_of_triangles(const JsonCursor& where, const std::string& name, std::si
     warn_at(where, name, fmt::format("left out {} triangle{} {}", count, count == 1 ? "" : "s", what));
 }
 
+// Of the vertices that triangles use.
 Bounds bounds_of(const FileMesh& mesh, const glm::dmat4& transform) {
     Bounds bounds{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
-    for (const glm::dvec3& p : mesh.positions) {
-        const glm::dvec3 placed(transform * glm::dvec4(p, 1.0));
-        bounds.low_mm = glm::min(bounds.low_mm, placed);
-        bounds.high_mm = glm::max(bounds.high_mm, placed);
-    }
+    for (const glm::uvec3& triangle : mesh.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 placed(transform * glm::dvec4(mesh.positions[triangle[k]], 1.0));
+            bounds.low_mm = glm::min(bounds.low_mm, placed);
+            bounds.high_mm = glm::max(bounds.high_mm, placed);
+        }
     return bounds;
 }
 
@@ -95,7 +97,9 @@ void Placement::move_to_origin(Placed& placed, Scene& scene) const {
     if (scene.origin_mm != glm::dvec3(0.0)) transform = glm::translate(glm::dmat4(1.0), -scene.origin_mm) * transform;
     shape.mesh = placed_mesh(placed.mesh, transform, shape.texture_repeats);
     placed.mesh = {};
-    for (const glm::vec3& position : shape.mesh.positions_mm) check_range(where, glm::dvec3(position), scene.origin_mm);
+    for (const glm::uvec3& triangle : shape.mesh.triangles)
+        for (int k = 0; k < 3; ++k)
+            check_range(where, glm::dvec3(shape.mesh.positions_mm[triangle[k]]), scene.origin_mm);
     if (textured && shape.mesh.uv.empty())
         where.fail(
             fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "

@@ -92,6 +92,9 @@ class BinarySource {
     bool big_endian_;
 };
 
+// Steps of single precision above this share of a mesh's size show.
+constexpr double largest_step = 2e-4;
+
 template <typename Source>
 class PlyBody {
   public:
@@ -177,6 +180,27 @@ class PlyBody {
         mesh_.positions.reserve(static_cast<std::size_t>(element_->count));
         if (u >= 0) uvs_.reserve(static_cast<std::size_t>(element_->count));
         for (record_ = 0; record_ < element_->count; ++record_) take_vertex(properties);
+        for (const int axis : axes)
+            if (element_->properties[static_cast<std::size_t>(axis)].type == PlyType::float32) return remark_on_steps();
+    }
+
+    // Coordinates that were rounded before they came here.
+    void remark_on_steps() {
+        if (mesh_.positions.empty()) return;
+        glm::dvec3 low = mesh_.positions.front(), high = low;
+        for (const glm::dvec3& p : mesh_.positions) {
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+        const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high)), size = high - low;
+        const double step = std::numeric_limits<float>::epsilon() * std::max({far.x, far.y, far.z});
+        const double extent = std::max({size.x, size.y, size.z});
+        if (step > largest_step * extent)
+            mesh_.remarks.push_back(
+                fmt::format("{}: its coordinates are in single precision (float) with steps of {:.2g}, far from their "
+                            "origin beside its "
+                            "size of {:.3g}; as doubles, or nearer to the origin, they would keep its form",
+                            file_, step, extent));
     }
 
     // Indices of the texture coordinates; -1 without them.
