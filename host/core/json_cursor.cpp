@@ -142,6 +142,13 @@ std::vector<std::pair<std::string, JsonCursor>> JsonCursor::named_members() cons
     return result;
 }
 
+std::vector<std::pair<std::string, JsonCursor>> JsonCursor::members() const {
+    expect_object();
+    std::vector<std::pair<std::string, JsonCursor>> result;
+    for (std::size_t i = 0; i < value_->keys.size(); ++i) result.emplace_back(value_->keys[i].name, member(i));
+    return result;
+}
+
 std::vector<JsonCursor> JsonCursor::items() const {
     if (!is(JsonValue::Type::array)) fail_expected("an array");
     std::vector<JsonCursor> result;
@@ -214,7 +221,7 @@ glm::dvec3 JsonCursor::vector(const NumberRange& range) const {
 }
 
 glm::dvec3 JsonCursor::direction() const {
-    const glm::dvec3 v = vector();
+    const glm::dvec3 v = vector(coordinate_range);
     const double length = glm::length(v);
     if (!(length > 1e-12)) fail("expected a direction, got a vector of length zero");
     return v / length;

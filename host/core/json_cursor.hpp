@@ -29,8 +29,10 @@ struct IntegerRange {
     std::int64_t high;
 };
 
-// Any length or coordinate [mm] in a scene: up to 10 km.
+// Any length or coordinate [mm] of a scene about its own origin: up to 10 km. Single precision has steps of 1 mm there.
 inline constexpr NumberRange coordinate_range{-1e7, 1e7};
+// A place [mm] in the coordinates of a scene's file: up to 100,000 km.
+inline constexpr NumberRange place_range{-1e11, 1e11};
 inline constexpr NumberRange length_range{0.0, 1e7, true};
 
 // All readers below throw InputError "FILE:LINE: KEY.PATH: expected ..., got ...", or without a file, for a flag,
@@ -59,6 +61,8 @@ class JsonCursor {
     JsonCursor at(const std::string& key) const;
     // The one key of the list that the object has; none or several are errors.
     std::string one_of(const std::vector<std::string>& keys) const;
+    // Members with their names, whatever these are.
+    std::vector<std::pair<std::string, JsonCursor>> members() const;
     // Members with their names, which must be fit for file names.
     std::vector<std::pair<std::string, JsonCursor>> named_members() const;
 
@@ -83,7 +87,7 @@ class JsonCursor {
     Enum word() const {
         return static_cast<Enum>(choice(words_of<Enum>));
     }
-    glm::dvec3 vector(const NumberRange& range = coordinate_range) const;
+    glm::dvec3 vector(const NumberRange& range = place_range) const;
     // A vector scaled to length 1; a zero vector is an error.
     glm::dvec3 direction() const;
 

@@ -19,7 +19,8 @@ std::vector<TriangleUv> triangle_uvs(const Scene& scene) {
     for (const Shape& shape : scene.shapes)
         for (std::size_t i = 0; i < shape.mesh.triangles.size(); ++i) {
             const std::array<glm::vec2, 3> uv = shape.mesh.uv.empty() ? std::array<glm::vec2, 3>{} : shape.mesh.uv[i];
-            result.push_back({uv[0].x, uv[0].y, uv[1].x, uv[1].y, uv[2].x, uv[2].y});
+            result.push_back(
+                {uv[0].x, uv[0].y, uv[1].x, uv[1].y, uv[2].x, uv[2].y, shape.texture_repeats ? 1u : 0u, 0});
         }
     return result;
 }

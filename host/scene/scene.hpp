@@ -1,4 +1,5 @@
-// The scene as plain data, already checked, in world space. Lengths are millimetres, wavelengths nanometres.
+// The scene as plain data, already checked, in world space about Scene::origin_mm. Lengths are millimetres, wavelengths
+// nanometres.
 #pragma once
 
 #include <array>
@@ -57,11 +58,17 @@ struct Fluorophore {
 
 struct BlackMaterial {};
 
+// Where texture coordinates of a mesh are beyond 0 to 1.
+enum class TextureWrap { repeat, clamp };
+template <>
+inline const Words words_of<TextureWrap> = {"repeat", "clamp"};
+
 struct DiffuseMaterial {
     Spectrum reflectance = Spectrum::constant(0.0);  // in [0, 1]
     // A picture without opacity, or none: reflectance + luminance (white - reflectance) where it lies.
     std::shared_ptr<const Picture> texture;
     Spectrum white = Spectrum::constant(0.0);  // in [0, 1]
+    TextureWrap wrap = TextureWrap::repeat;
 };
 
 // A fluorophore in a material.
@@ -119,6 +126,8 @@ struct Shape {
     int body = -1;
     int light = -1;          // index into Scene::lights when this shape is the surface of an emitter
     bool two_sided = false;  // the back is like the front, else black; opaque materials only
+    // Its texture is laid again and again, and filtered across its edges; else it ends at them.
+    bool texture_repeats = false;
     Mesh mesh;
 };
 
@@ -143,7 +152,8 @@ struct Light {
 };
 
 struct Scene {
-    std::string file;  // as given on the command line
+    std::string file;           // as given on the command line
+    glm::dvec3 origin_mm{0.0};  // where in the file's coordinates all places below start from
     RenderSettings render;
     Film film;
     Camera camera;

@@ -17,7 +17,9 @@ STOKES_ASSERT_SIZE(TextureRecord, 16);
 // right. Written by the host once per scene, one a triangle where any material has a texture.
 typedef struct TriangleUv {
     float u0, v0, u1, v1, u2, v2;
+    unsigned int repeats;  // 1: beyond 0 to 1 the picture repeats, and is filtered across its edges; 0: it ends there
+    unsigned int padding;
 } TriangleUv;
-STOKES_ASSERT_SIZE(TriangleUv, 24);
+STOKES_ASSERT_SIZE(TriangleUv, 32);
 
 #endif

@@ -44,7 +44,7 @@ void add_wire(std::vector<Triangle>& all, const glm::vec3& from, const glm::vec3
 }  // namespace
 
 std::vector<Triangle> mesh_triangles(const std::string& file) {
-    const Mesh mesh = read_mesh(file);
+    const Mesh mesh = placed_mesh(read_mesh(file), glm::dmat4(1.0), false);
     glm::vec3 low = mesh.positions_mm.front(), high = low;
     for (const glm::vec3& p : mesh.positions_mm) low = glm::min(low, p), high = glm::max(high, p);
     const glm::vec3 extent = high - low;

@@ -92,7 +92,7 @@ TEST_CASE("A cursor names the key path, what it expected and what it found") {
     CHECK(input_error([&] { root.at("list").items().at(2).at("z").text(); }) ==
           "f.json:2: list[2].z: expected a string, got an array of 0");
     CHECK(input_error([&] { root.at("list").vector(); }) ==
-          "f.json:2: list[2]: expected a number in [-1e+07, 1e+07], got an object");
+          "f.json:2: list[2]: expected a number in [-1e+11, 1e+11], got an object");
     CHECK(input_error([&] { root.at("width"); }) == "f.json:1: missing key \"width\"");
     CHECK(input_error([&] {
               root.expect_keys({"n", "s", "v", "lists"}, {});

@@ -3,9 +3,8 @@
 #include <cstring>
 #include <random>
 
-#include "host/scene/mesh/mesh.hpp"
-#include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/file_meshes.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -69,16 +68,16 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }  // namespace
 
 TEST_CASE("PLY in all three formats gives the same square") {
-    check_square(parse_ply(ascii_square, "m.ply"));
-    check_square(parse_ply(binary_square(false), "m.ply"));
-    check_square(parse_ply(binary_square(true), "m.ply"));
+    check_square(as_read(parse_ply(ascii_square, "m.ply")));
+    check_square(as_read(parse_ply(binary_square(false), "m.ply")));
+    check_square(as_read(parse_ply(binary_square(true), "m.ply")));
 }
 
 TEST_CASE("A PLY file may have its faces before its vertices") {
     const std::string text =
         "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
         "property float x\nproperty float y\nproperty float z\nend_header\n3 2 1 0\n0 0 0 1 0 0\n0 1 +0\n";
-    const Mesh mesh = parse_ply(text, "m.ply");
+    const Mesh mesh = as_read(parse_ply(text, "m.ply"));
     REQUIRE(mesh.triangles.size() == 1);
     CHECK(mesh.triangles[0] == glm::uvec3(2, 1, 0));
     CHECK(input_error([&] { parse_ply(replaced(text, "3 2 1 0", "3 2 1 3"), "m.ply"); }) ==
@@ -118,7 +117,7 @@ TEST_CASE("Bad PLY is one line with file and place") {
         {"4 0 1 2 3", "2 0 1", "m.ply:16: face 0: expected 3 or more vertices, got 2"},
         {"4 0 1 2 3", "-4 0 1", "m.ply:16: face 0: a list of length -4"},
         {"4 0 1 2 3\n", "4 0 1 2\n", "m.ply:17: face 0: expected a number, got the end of the file"},
-        {"element face 1", "element face 0", "m.ply: no triangles"},
+        {"element face 1", "element face 0", "m.ply: no triangles, only points"},
     };
     for (const Case& c : cases) {
         INFO(c.what << " -> " << c.with);
@@ -144,9 +143,9 @@ TEST_CASE("Binary PLY that is cut short or damaged is an error and nothing worse
         std::string damaged = i % 2 == 0 ? whole : ascii_square;
         for (int k = 0; k < 3; ++k) damaged[random() % damaged.size()] = static_cast<char>(random());
         const std::string text = input_error([&] {
-            const Mesh mesh = parse_ply(damaged, "m.ply");
+            const FileMesh mesh = parse_ply(damaged, "m.ply");
             for (const glm::uvec3& t : mesh.triangles) {
-                REQUIRE(std::max({t.x, t.y, t.z}) < mesh.positions_mm.size());
+                REQUIRE(std::max({t.x, t.y, t.z}) < mesh.positions.size());
             }
         });
         if (text.empty()) ++good;
@@ -155,17 +154,17 @@ TEST_CASE("Binary PLY that is cut short or damaged is an error and nothing worse
 }
 
 TEST_CASE("OBJ gives vertices and fans, whatever else its lines hold") {
-    const Mesh mesh = parse_obj(
-        "# square\nmtllib a.mtl\nv 0 0 0\nv 2 0 0 1.0\nvt 0 0\nvn 0 1 0\nv\t2 0 3.5 0.1 0.2 0.3\r\nv 0 0 "
-        "3.5\n"
-        "s off\nusemtl x\nf 1/1 2/1/1 3//1 4 # fan\nf -4 -3/2 -2\n",
-        "m.obj");
+    const Mesh mesh = as_read(
+        parse_obj("# square\nmtllib a.mtl\nv 0 0 0\nv 2 0 0 1.0\nvt 0 0\nvn 0 1 0\nv\t2 0 3.5 0.1 0.2 0.3\r\nv 0 0 "
+                  "3.5\n"
+                  "s off\nusemtl x\nf 1/1 2/1/1 3//1 4 # fan\nf -4 -3/2 -2\n",
+                  "m.obj"));
     CHECK(mesh.positions_mm.size() == 4);
     REQUIRE(mesh.triangles.size() == 3);
     CHECK(mesh.triangles[0] == glm::uvec3(0, 1, 2));
     CHECK(mesh.triangles[1] == glm::uvec3(0, 2, 3));
     CHECK(mesh.triangles[2] == glm::uvec3(0, 1, 2));
-    const Mesh early = parse_obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0", "m.obj");
+    const FileMesh early = parse_obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0", "m.obj");
     CHECK(early.triangles[0] == glm::uvec3(0, 1, 2));
 }
 
@@ -176,7 +175,7 @@ TEST_CASE("Bad OBJ is one line with file and line") {
     };
     const Case cases[] = {
         {"", "m.obj: no triangles"},
-        {vertices, "m.obj: no triangles"},
+        {vertices, "m.obj: no triangles, only points"},
         {"v 0 0\n", "m.obj:1: expected 3 finite coordinates, got \"\""},
         {"v 0 0 zero\n", "m.obj:1: expected 3 finite coordinates, got \"zero\""},
         {"v 0 0 inf\n", "m.obj:1: expected 3 finite coordinates, got \"inf\""},
@@ -200,7 +199,7 @@ TEST_CASE("Mesh files are read by their ending") {
     put_file(folder.file("a.ply"), ascii_square);
     put_file(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     put_file(folder.file("a.stl"), "");
-    check_square(read_mesh(folder.file("a.ply")));
+    check_square(as_read(read_mesh(folder.file("a.ply"))));
     CHECK(read_mesh(folder.file("a.obj")).triangles.size() == 1);
     CHECK(input_error([&] { read_mesh(folder.file("a.stl")); }) ==
           folder.file("a.stl") + ": expected a mesh file that ends in .ply or .obj");
@@ -209,11 +208,11 @@ TEST_CASE("Mesh files are read by their ending") {
 }
 
 TEST_CASE("The shipped meshes are what their README says") {
-    const Mesh bunny = read_mesh(source_path("scenes/meshes/bunny_closed.ply"));
+    const Mesh bunny = as_read(read_mesh(source_path("scenes/meshes/bunny_closed.ply")));
     CHECK(bunny.positions_mm.size() == 34839);
     CHECK(bunny.triangles.size() == 69674);
     CHECK(mesh_volume_mm3(bunny) > 0.0);
-    const Mesh dragon = read_mesh(source_path("scenes/meshes/dragon_48k.ply"));
+    const Mesh dragon = as_read(read_mesh(source_path("scenes/meshes/dragon_48k.ply")));
     CHECK(dragon.positions_mm.size() == 22447);
     CHECK(dragon.triangles.size() == 44894);
     CHECK(mesh_volume_mm3(dragon) > 0.0);
@@ -226,10 +225,10 @@ using Uv = std::array<glm::vec2, 3>;
 }  // namespace
 
 TEST_CASE("OBJ texture coordinates follow the corners, v counted from the top") {
-    const Mesh mesh = parse_obj(
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1 0\n"
-        "f 1/1 2/2/1 3/3 4/-1\n",
-        "m.obj");
+    const Mesh mesh =
+        as_read(parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1 0\n"
+                          "f 1/1 2/2/1 3/3 4/-1\n",
+                          "m.obj"));
     REQUIRE(mesh.uv.size() == 2);
     CHECK(mesh.uv[0] == Uv{glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(1, 0.25)});
     CHECK(mesh.uv[1] == Uv{glm::vec2(0, 1), glm::vec2(1, 0.25), glm::vec2(0, 0)});
@@ -251,7 +250,7 @@ TEST_CASE("PLY texture coordinates belong to the vertices, by any of their usual
                    "0 0 0 0 0\n1 0.25 0 0 1\n1 1 1 0 " +
                    last + "\n3 0 1 2\n";
         };
-        const Mesh mesh = parse_ply(text("0.5"), "m.ply");
+        const Mesh mesh = as_read(parse_ply(text("0.5"), "m.ply"));
         CHECK(mesh.positions_mm[2] == glm::vec3(1, 1, 0));
         REQUIRE(mesh.uv.size() == 1);
         CHECK(mesh.uv[0] == Uv{glm::vec2(0, 1), glm::vec2(1, 0.75), glm::vec2(0.5, 0)});

@@ -4,6 +4,7 @@
 #include "host/scene/mesh/mesh.hpp"
 #include "host/scene/mesh/shapes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/file_meshes.hpp"
 #include "tests/support/triangle_meshes.hpp"
 
 using namespace stokes;

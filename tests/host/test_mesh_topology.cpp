@@ -7,6 +7,7 @@
 #include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/mesh_reader.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/file_meshes.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/test_scenes.hpp"
@@ -203,7 +204,7 @@ TEST_CASE("Steps, bends and sheets that face both ways are not flat") {
 TEST_CASE("The shipped dragon and bunny are closed") {
     for (const char* file : {"dragon_48k.ply", "bunny_closed.ply"}) {
         INFO(file);
-        Mesh mesh = read_mesh(source_path("scenes/meshes/") + file);
+        Mesh mesh = as_read(read_mesh(source_path("scenes/meshes/") + file));
         transform_mesh(mesh, glm::scale(askew(), glm::dvec3(270.0)));
         drop_degenerate_triangles(mesh);
         const BodyTopology topology = topology_of({mesh});

@@ -7,6 +7,7 @@
 #include "host/scene/mesh/mesh.hpp"
 #include "host/scene/readers/mask.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/file_meshes.hpp"
 #include "tests/support/traced_scene.hpp"
 
 using namespace stokes;

@@ -220,7 +220,7 @@ TEST_CASE("a texture's reflectance is what the photon that meets it loses and ke
     const TextureRecord none{0, 0, 0, STOKES_NONE}, texture{2, 1, 0, 1};
     a.textures = {none, none, texture, texture};
     a.texels = {0.25f, 0.75f};
-    a.uv = {{0.25f, 0.5f, 0.75f, 0.5f, 0.25f, 0.5f}};
+    a.uv = {{0.25f, 0.5f, 0.75f, 0.5f, 0.25f, 0.5f, 0, 0}};
     for (std::size_t path = 0; path < a.flux.size(); ++path)
         a.hits.push_back({1.0f, path % 4 == 0 ? 0.0f : 1.0f, 0.0f, 0});
     const Scattered s = scatter(a, round_from(0, 400), 400);

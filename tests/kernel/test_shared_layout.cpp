@@ -121,7 +121,7 @@ using namespace stokes;
     S(TextureRecord) F(TextureRecord, width) F(TextureRecord, height) F(TextureRecord, first_texel) \
         F(TextureRecord, white_row) \
     S(TriangleUv) F(TriangleUv, u0) F(TriangleUv, v0) F(TriangleUv, u1) F(TriangleUv, v1) F(TriangleUv, u2) \
-        F(TriangleUv, v2)
+        F(TriangleUv, v2) F(TriangleUv, repeats) F(TriangleUv, padding)
 // clang-format on
 
 namespace {

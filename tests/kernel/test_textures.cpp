@@ -20,8 +20,9 @@ struct Pictures {
         std::mt19937 random(3);
         std::uniform_real_distribution<float> uniform;
         for (int i = 0; i < 15; ++i) texels.push_back(uniform(random));
-        uv.push_back({0, 0, 0, 1, 1, 1});                      // half of a rectangle
-        uv.push_back({-0.5f, 2.0f, 1.7f, -0.3f, 0.4f, 0.9f});  // beyond the picture in places
+        uv.push_back({0, 0, 0, 1, 1, 1, 0, 0});                      // half of a rectangle
+        uv.push_back({-0.5f, 2.0f, 1.7f, -0.3f, 0.4f, 0.9f, 0, 0});  // beyond the picture in places
+        uv.push_back({-0.5f, 2.0f, 1.7f, -0.3f, 0.4f, 0.9f, 1, 0});  // and where it repeats
     }
 
     std::vector<float> luminances(const std::vector<std::uint32_t>& materials, const std::vector<Hit>& hits) const {
@@ -42,11 +43,24 @@ struct Pictures {
 };
 
 // The picture as a function of place: bilinear between the middles of texels, in double precision.
-double picture_twin(const TextureRecord& picture, const std::vector<float>& texels, double u, double v) {
+double picture_twin(const TextureRecord& picture, const std::vector<float>& texels, double u, double v, bool repeats) {
     const auto texel = [&](double x, double y) {
         return double(
             texels[picture.first_texel + static_cast<std::size_t>(y) * picture.width + static_cast<std::size_t>(x)]);
     };
+    if (repeats) {  // the sum over all copies of all texels, each a tent over its neighbours' middles
+        double sum = 0.0;
+        for (int y = -3 * static_cast<int>(picture.height); y < 4 * static_cast<int>(picture.height); ++y)
+            for (int x = -3 * static_cast<int>(picture.width); x < 4 * static_cast<int>(picture.width); ++x) {
+                const double along = std::max(0.0, 1.0 - std::abs(u * picture.width - 0.5 - x)),
+                             down = std::max(0.0, 1.0 - std::abs(v * picture.height - 0.5 - y));
+                if (along * down > 0.0)
+                    sum += along * down *
+                           texel((x + 3 * static_cast<int>(picture.width)) % static_cast<int>(picture.width),
+                                 (y + 3 * static_cast<int>(picture.height)) % static_cast<int>(picture.height));
+            }
+        return sum;
+    }
     const double x = std::clamp(u * picture.width - 0.5, 0.0, picture.width - 1.0);
     const double y = std::clamp(v * picture.height - 0.5, 0.0, picture.height - 1.0);
     const double x1 = std::min(std::floor(x) + 1, picture.width - 1.0),
@@ -58,7 +72,7 @@ double picture_twin(const TextureRecord& picture, const std::vector<float>& texe
 
 }  // namespace
 
-TEST_CASE("textures are bilinear between the middles of texels, and clamped", "[textures][tiny]") {
+TEST_CASE("textures are bilinear between the middles of texels, and end at their edges or repeat", "[textures][tiny]") {
     const Pictures pictures;
     std::mt19937 random(4);
     std::uniform_real_distribution<float> uniform;
@@ -68,7 +82,7 @@ TEST_CASE("textures are bilinear between the middles of texels, and clamped", "[
         float u = uniform(random), v = uniform(random);
         if (u + v > 1.0f) u = 1.0f - u, v = 1.0f - v;
         materials.push_back(i % 3);
-        hits.push_back({1.0f, u, v, i / 3 % 2});
+        hits.push_back({1.0f, u, v, i / 3 % 3});
     }
     const std::vector<float> found = pictures.luminances(materials, hits);
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -76,8 +90,9 @@ TEST_CASE("textures are bilinear between the middles of texels, and clamped", "[
         const double u = double(hits[i].u), v = double(hits[i].v);
         const double at_u = (1 - u - v) * double(t.u0) + u * double(t.u1) + v * double(t.u2);
         const double at_v = (1 - u - v) * double(t.v0) + u * double(t.v1) + v * double(t.v2);
-        const double expected =
-            materials[i] == 0 ? 0.0 : picture_twin(pictures.records[materials[i]], pictures.texels, at_u, at_v);
+        const double expected = materials[i] == 0 ? 0.0
+                                                  : picture_twin(pictures.records[materials[i]], pictures.texels, at_u,
+                                                                 at_v, t.repeats != 0);
         CHECK(std::abs(double(found[i]) - expected) < 1e-5);
     }
 }

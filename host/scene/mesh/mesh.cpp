@@ -13,16 +13,17 @@ constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
 glm::dvec3 corner(const Mesh& mesh, std::uint32_t index) { return glm::dvec3(mesh.positions_mm[index]); }
 
 // Without a height beyond the rounding of its coordinates, or so small that the normal underflows.
-bool is_degenerate(const Mesh& mesh, const glm::uvec3& triangle) {
-    const glm::dvec3 a = corner(mesh, triangle.x);
-    const glm::dvec3 b = corner(mesh, triangle.y);
-    const glm::dvec3 c = corner(mesh, triangle.z);
+bool is_degenerate(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const glm::dvec3 farthest = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
     const double rounding = FLT_EPSILON * std::max({farthest.x, farthest.y, farthest.z});
     const double longest =
         std::sqrt(std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)}));
     const double length = 2.0 * glm::length(area_vector_mm2(a, b, c));
     return !(length > rounding * longest && length * length >= FLT_MIN);
+}
+
+bool is_degenerate(const Mesh& mesh, const glm::uvec3& t) {
+    return is_degenerate(corner(mesh, t.x), corner(mesh, t.y), corner(mesh, t.z));
 }
 
 void drop_unused_vertices(Mesh& mesh) {
@@ -78,16 +79,21 @@ double mesh_volume_mm3(const Mesh& mesh) {
     return sum;
 }
 
-void transform_mesh(Mesh& mesh, const glm::dmat4& transform) {
-    for (glm::vec3& p : mesh.positions_mm) p = glm::vec3(transform * glm::dvec4(glm::dvec3(p), 1.0));
-    if (glm::determinant(glm::dmat3(transform)) >= 0.0) return;
+void turn_over(Mesh& mesh) {
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
     for (auto& uv : mesh.uv) std::swap(uv[1], uv[2]);
 }
 
-std::size_t count_degenerate_triangles(const Mesh& mesh) {
-    return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
-                                                  [&](const glm::uvec3& t) { return is_degenerate(mesh, t); }));
+std::size_t count_flat_triangles(const std::vector<glm::dvec3>& positions, const std::vector<glm::uvec3>& triangles) {
+    glm::dvec3 low(INFINITY), high(-INFINITY);
+    for (const glm::dvec3& p : positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::dvec3 middle = 0.5 * (low + high);
+    return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(), [&](const glm::uvec3& t) {
+        return is_degenerate(positions[t.x] - middle, positions[t.y] - middle, positions[t.z] - middle);
+    }));
 }
 
 std::size_t drop_degenerate_triangles(Mesh& mesh) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "host/scene/scene.hpp"
 
@@ -25,12 +26,11 @@ double mesh_area_mm2(const Mesh& mesh);
 // Volume inside a closed mesh [mm^3]; negative when its triangles face inward.
 double mesh_volume_mm3(const Mesh& mesh);
 
-// Applies the affine transform to the positions; one that mirrors also turns the triangles over, so that
-// what was outside stays outside.
-void transform_mesh(Mesh& mesh, const glm::dmat4& transform);
+// Turns the triangles over: the front becomes the back.
+void turn_over(Mesh& mesh);
 
-// Triangles whose normal cannot be found in single precision.
-std::size_t count_degenerate_triangles(const Mesh& mesh);
+// Triangles whose normal could not be found in single precision though the mesh lay about the origin.
+std::size_t count_flat_triangles(const std::vector<glm::dvec3>& positions, const std::vector<glm::uvec3>& triangles);
 
 // Drops the triangles whose normal cannot be found in single precision, and the vertices that no triangle
 // uses. Returns the number of triangles dropped.

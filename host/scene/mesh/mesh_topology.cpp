@@ -279,10 +279,11 @@ std::vector<BodyKind> check_walkable(const Scene& scene, const std::function<boo
             continue;
         checked[body] = true;
         const BodyTopology topology = body_topology(scene, shape.body);
+        const glm::dvec3 rim = topology.rim_mm + scene.origin_mm;
         if (topology.kind == BodyKind::open)
             fail_to_walk(scene, shape,
                          fmt::format("{} edges without a neighbour, one at ({:.6g}, {:.6g}, {:.6g}) mm",
-                                     topology.rim_edges, topology.rim_mm.x, topology.rim_mm.y, topology.rim_mm.z));
+                                     topology.rim_edges, rim.x, rim.y, rim.z));
         // Two sides back to back enclose nothing but rounding.
         const double rounding = FLT_EPSILON * std::pow(topology.area_mm2, 1.5);
         if (topology.kind == BodyKind::closed && !(topology.volume_mm3 > rounding))

@@ -121,25 +121,22 @@ Mesh read_emitter_mesh(const ObjectReader& where, glm::dmat4& transform) {
     return mesh;
 }
 
-Light read_emitter(const ObjectReader& where, const std::string& name, SpectrumReader& spectra, Scene& scene) {
+Light read_emitter(const ObjectReader& where, const std::string& name, Scene& scene, Placement& placement) {
     Shape shape;
     shape.name = name;
     glm::dmat4 transform(1.0);
-    shape.mesh = read_emitter_mesh(where, transform);
+    const Mesh mesh = read_emitter_mesh(where, transform);
     shape.material = emitter_material(where, scene);
     shape.body = scene.body_count++;
     shape.light = static_cast<int>(scene.lights.size());
     Light light;
-    light.kind = SurfaceLight{add_shape(where, std::move(shape), transform, scene)};
-    const double area_mm2 = mesh_area_mm2(scene.shapes.back().mesh);
-    const Spectrum spectrum = spectra.read(where, "spectrum", Outside::zero);
-    light.flux = emitter_flux(where, spectrum, area_mm2, scene.render);
+    light.kind = SurfaceLight{placement.add(where, std::move(shape), mesh, transform)};
     return light;
 }
 
 }  // namespace
 
-void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene) {
+void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene, Placement& placement) {
     std::vector<std::string> names;
     for (const JsonCursor& place : lights.items()) {
         const ObjectReader where(place, "light");
@@ -147,11 +144,23 @@ void read_lights(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene
         if (!beam && !emitter) where.fail_unread();
         names.push_back(read_own_name(where, fmt::format("light {}", names.size()), names));
         Light light =
-            beam ? read_beam(where, spectra, scene.render) : read_emitter(where, names.back(), spectra, scene);
+            beam ? read_beam(where, spectra, scene.render) : read_emitter(where, names.back(), scene, placement);
         light.name = names.back();
         scene.lights.push_back(std::move(light));
     }
     if (scene.lights.empty()) lights.fail("expected at least one light");
+}
+
+void read_emitter_spectra(const JsonCursor& lights, SpectrumReader& spectra, Scene& scene) {
+    const std::vector<JsonCursor> places = lights.items();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto* emitter = std::get_if<SurfaceLight>(&scene.lights[i].kind);
+        if (emitter == nullptr) continue;
+        const ObjectReader where(places[i], "light");
+        const Spectrum spectrum = spectra.read(where, "spectrum", Outside::zero);
+        const double area_mm2 = mesh_area_mm2(scene.shapes[static_cast<std::size_t>(emitter->shape)].mesh);
+        scene.lights[i].flux = emitter_flux(where, spectrum, area_mm2, scene.render);
+    }
 }
 
 }  // namespace stokes

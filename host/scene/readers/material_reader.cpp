@@ -68,6 +68,7 @@ DiffuseMaterial read_diffuse(const ObjectReader& where, SpectrumReader& spectra,
     material.reflectance = spectra.read(reflectance, "black", Outside::hold);
     material.white = spectra.read(reflectance, "white", Outside::hold);
     material.texture = textures.read(reflectance.at("texture"));
+    if (const auto wrap = reflectance.find("wrap")) material.wrap = wrap->word<TextureWrap>();
     return material;
 }
 

@@ -146,6 +146,11 @@ Picture parse_png(std::string_view bytes, const std::string& file) {
     return picture;
 }
 
-Picture read_picture(const std::string& path) { return parse_png(read_file(path), path); }
+Picture read_picture(const std::string& path) {
+    for (const char* tile : {"<UDIM>", "<udim>", "%(UDIM)", "<UVTILE>", "<uvtile>"})
+        if (path.find(tile) != std::string::npos)
+            throw InputError(path + ": expected one PNG file, got a name for UDIM tiles, which are not read");
+    return parse_png(read_file(path), path);
+}
 
 }  // namespace stokes

@@ -14,7 +14,8 @@ class HeaderParser {
     HeaderParser(TextScanner& scanner, const std::string& file) : scanner_(scanner), file_(file) {}
 
     PlyHeader parse() {
-        if (scanner_.take_line() != "ply") fail(1, "expected \"ply\", the first line of a PLY file");
+        if (TextScanner first(scanner_.take_line()); first.token() != "ply" || !first.token().empty())
+            fail(1, "expected \"ply\", the first line of a PLY file");
         while (!scanner_.at_end()) {
             const std::int64_t line = scanner_.line();
             TextScanner words(scanner_.take_line());

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -9,6 +10,7 @@
 
 #include "host/core/error.hpp"
 #include "host/scene/readers/mesh_reader.hpp"
+#include "host/scene/readers/mesh_text.hpp"
 #include "host/scene/readers/ply_header.hpp"
 
 namespace stokes {
@@ -90,13 +92,16 @@ class BinarySource {
     bool big_endian_;
 };
 
+// Steps of single precision above this share of a mesh's size show.
+constexpr double largest_step = 2e-4;
+
 template <typename Source>
 class PlyBody {
   public:
     PlyBody(const PlyHeader& header, Source source, const std::string& file)
         : header_(header), source_(source), file_(file) {}
 
-    Mesh parse() {
+    FileMesh parse() {
         for (const PlyElement& element : header_.elements) {
             if (have_vertices_ && have_faces_) break;
             element_ = &element;
@@ -110,8 +115,13 @@ class PlyBody {
             }
         }
         check_indices();
-        if (has_uv_ && !uvs_.empty())
-            for (const glm::uvec3& t : mesh_.triangles) mesh_.uv.push_back({uvs_[t.x], uvs_[t.y], uvs_[t.z]});
+        finish_uv();
+        if (const auto crossing = cut_polygons(mesh_, fans_); !crossing.empty())
+            mesh_.remarks.push_back(
+                crossing_remark(fmt::format("{}: face {}", file_, crossing.front()), crossing.size()));
+        if (pictures_.size() > 1)
+            mesh_.remarks.push_back(fmt::format(
+                "{}: its faces have {} pictures (texnumber); a texture lies on all of them", file_, pictures_.size()));
         return std::move(mesh_);
     }
 
@@ -167,9 +177,30 @@ class PlyBody {
         }
         const auto [u, v] = uv_properties();
         const int properties[5] = {axes[0], axes[1], axes[2], u, v};
-        mesh_.positions_mm.reserve(static_cast<std::size_t>(element_->count));
+        mesh_.positions.reserve(static_cast<std::size_t>(element_->count));
         if (u >= 0) uvs_.reserve(static_cast<std::size_t>(element_->count));
         for (record_ = 0; record_ < element_->count; ++record_) take_vertex(properties);
+        for (const int axis : axes)
+            if (element_->properties[static_cast<std::size_t>(axis)].type == PlyType::float32) return remark_on_steps();
+    }
+
+    // Coordinates that were rounded before they came here.
+    void remark_on_steps() {
+        if (mesh_.positions.empty()) return;
+        glm::dvec3 low = mesh_.positions.front(), high = low;
+        for (const glm::dvec3& p : mesh_.positions) {
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+        const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high)), size = high - low;
+        const double step = std::numeric_limits<float>::epsilon() * std::max({far.x, far.y, far.z});
+        const double extent = std::max({size.x, size.y, size.z});
+        if (step > largest_step * extent)
+            mesh_.remarks.push_back(
+                fmt::format("{}: its coordinates are in single precision (float) with steps of {:.2g}, far from their "
+                            "origin beside its "
+                            "size of {:.3g}; as doubles, or nearer to the origin, they would keep its form",
+                            file_, step, extent));
     }
 
     // Indices of the texture coordinates; -1 without them.
@@ -185,7 +216,7 @@ class PlyBody {
 
     // wanted: which properties are x, y, z, u and v.
     void take_vertex(const int (&wanted)[5]) {
-        float values[5] = {};
+        double values[5] = {};
         for (int i = 0; i < static_cast<int>(element_->properties.size()); ++i) {
             const PlyProperty& property = element_->properties[static_cast<std::size_t>(i)];
             const auto* found = std::find(wanted, wanted + 5, i);
@@ -193,44 +224,51 @@ class PlyBody {
                 skip(property);
                 continue;
             }
-            const auto value = static_cast<float>(take(property.type));
-            const bool is_uv = found - wanted >= 3;
-            if (!std::isfinite(value) && !is_uv) fail("expected finite coordinates");
-            if (!std::isfinite(value)) {
-                has_uv_ = false;
-                mesh_.uv_fault =
-                    fmt::format("{}: vertex {}: expected finite texture coordinates", file_, mesh_.positions_mm.size());
-            }
+            const double value = take(property.type);
+            const bool is_uv = found - wanted >= 3, is_finite = std::isfinite(static_cast<float>(value));
+            if (!is_finite && !is_uv) fail("expected finite coordinates");
+            if (!is_finite) drop(vertex_uv_, "expected finite texture coordinates");
             values[found - wanted] = value;
         }
-        mesh_.positions_mm.emplace_back(values[0], values[1], values[2]);
-        if (wanted[3] >= 0) uvs_.emplace_back(values[3], 1.0f - values[4]);
+        mesh_.positions.emplace_back(values[0], values[1], values[2]);
+        if (wanted[3] >= 0) uvs_.emplace_back(values[3], 1.0 - values[4]);
     }
 
     void read_faces() {
         if (have_faces_) throw InputError(file_ + ": element face given twice");
         have_faces_ = true;
-        const int plural = element_->property("vertex_indices");
-        const int list = plural >= 0 ? plural : element_->property("vertex_index");
-        if (list < 0 || !element_->properties[static_cast<std::size_t>(list)].is_list) {
-            throw InputError(file_ + ": element face: expected a list property vertex_indices");
-        }
+        const auto list_of = [&](const char* name) {
+            const int i = element_->property(name);
+            return i >= 0 && element_->properties[static_cast<std::size_t>(i)].is_list ? i : -1;
+        };
+        const int indices = std::max(list_of("vertex_indices"), list_of("vertex_index"));
+        const int uvs = std::max(list_of("texcoord"), list_of("texcoords"));
+        const int picture = element_->property("texnumber");
+        if (indices < 0) throw InputError(file_ + ": element face: expected a list property vertex_indices");
+        corner_uv_.there = uvs >= 0;
         mesh_.triangles.reserve(static_cast<std::size_t>(element_->count));
         for (record_ = 0; record_ < element_->count; ++record_) {
+            const std::size_t first_triangle = mesh_.triangles.size();
             for (int i = 0; i < static_cast<int>(element_->properties.size()); ++i) {
                 const PlyProperty& property = element_->properties[static_cast<std::size_t>(i)];
-                if (i == list) {
+                if (i == indices) {
                     take_face(property);
+                } else if (i == uvs) {
+                    take_corner_uvs(property);
+                } else if (i == picture && !property.is_list) {
+                    take_picture(take(property.type));
                 } else {
                     skip(property);
                 }
             }
+            if (corner_uv_.there) place_corner_uvs(mesh_.triangles.size() - first_triangle);
         }
     }
 
     void take_face(const PlyProperty& list) {
         const std::int64_t corners = take_length(list);
         if (corners < 3) fail(fmt::format("expected 3 or more vertices, got {}", corners));
+        const std::size_t first_triangle = mesh_.triangles.size();
         const std::uint32_t first = take_index(list.type);
         std::uint32_t before = take_index(list.type);
         for (std::int64_t k = 2; k < corners; ++k) {
@@ -238,25 +276,78 @@ class PlyBody {
             mesh_.triangles.push_back({first, before, index});
             before = index;
         }
+        if (corners > 3) fans_.push_back({first_triangle, mesh_.triangles.size() - first_triangle, record_});
+    }
+
+    void take_corner_uvs(const PlyProperty& list) {
+        face_uvs_.clear();
+        for (std::int64_t left = take_length(list); left > 0; --left) face_uvs_.push_back(take(list.type));
+    }
+
+    // Of a face that has become this many triangles, as a fan.
+    void place_corner_uvs(std::size_t triangles) {
+        const std::size_t corners = triangles + 2;
+        if (face_uvs_.size() != 2 * corners)
+            drop(corner_uv_, fmt::format("expected 2 texture coordinates for each of {} corners, got {}", corners,
+                                         face_uvs_.size()));
+        const auto is_finite = [](double x) { return std::isfinite(static_cast<float>(x)); };
+        if (!std::all_of(face_uvs_.begin(), face_uvs_.end(), is_finite))
+            drop(corner_uv_, "expected finite texture coordinates");
+        if (!corner_uv_.there) return;
+        const auto corner = [&](std::size_t k) { return glm::dvec2(face_uvs_[2 * k], 1.0 - face_uvs_[2 * k + 1]); };
+        for (std::size_t k = 2; k < corners; ++k) mesh_.uv.push_back({corner(0), corner(k - 1), corner(k)});
+    }
+
+    // Faces without a picture have -1.
+    void take_picture(double number) {
+        const bool is_new = std::find(pictures_.begin(), pictures_.end(), number) == pictures_.end();
+        if (number >= 0.0 && is_new && pictures_.size() < 1000) pictures_.push_back(number);
     }
 
     std::uint32_t take_index(PlyType type) {
         const double index = take(type);
-        const double limit = have_vertices_ ? static_cast<double>(mesh_.positions_mm.size()) : 4294967295.0;
+        const double limit = have_vertices_ ? static_cast<double>(mesh_.positions.size()) : 4294967295.0;
         if (index >= 0.0 && index < limit && index == std::floor(index)) return static_cast<std::uint32_t>(index);
         fail(fmt::format("vertex index {} out of range", index));
     }
 
+    // Texture coordinates that are in the file and can be used.
+    struct UvSource {
+        bool there = true;
+    };
+
+    // The first reason is kept.
+    void drop(UvSource& source, const std::string& reason) {
+        source.there = false;
+        if (!mesh_.uv_fault.empty()) return;
+        mesh_.uv_fault = source_.place(file_, fmt::format("{} {}: {}", element_->name, record_, reason));
+    }
+
+    // Those of the corners go before those of the vertices.
+    void finish_uv() {
+        if (corner_uv_.there && !mesh_.uv.empty()) return mesh_.uv_fault.clear();
+        mesh_.uv.clear();
+        if (!vertex_uv_.there || uvs_.empty()) return;
+        mesh_.uv_fault.clear();
+        for (const glm::uvec3& t : mesh_.triangles) mesh_.uv.push_back({uvs_[t.x], uvs_[t.y], uvs_[t.z]});
+    }
+
     // For faces that came before their vertices.
     void check_indices() const {
-        if (mesh_.triangles.empty()) throw InputError(file_ + ": no triangles");
-        const std::size_t count = mesh_.positions_mm.size();
+        if (mesh_.triangles.empty()) throw InputError(file_ + no_triangles());
+        const std::size_t count = mesh_.positions.size();
         for (const glm::uvec3& t : mesh_.triangles) {
             const std::uint32_t largest = std::max({t.x, t.y, t.z});
             if (largest < count) continue;
             throw InputError(
                 fmt::format("{}: vertex index {} out of range: the file has {} vertices", file_, largest, count));
         }
+    }
+
+    std::string no_triangles() const {
+        for (const PlyElement& element : header_.elements)
+            if (element.name == "tristrips") return ": no triangles but strips, which are not read";
+        return mesh_.positions.empty() ? ": no triangles" : ": no triangles, only points";
     }
 
     const PlyHeader& header_;
@@ -266,25 +357,41 @@ class PlyBody {
     std::int64_t record_ = 0;
     bool have_vertices_ = false;
     bool have_faces_ = false;
-    Mesh mesh_;
-    std::vector<glm::vec2> uvs_;  // of the vertices, where they have texture coordinates
-    bool has_uv_ = true;          // false: one of them is no number
+    FileMesh mesh_;
+    std::vector<FanOfMesh> fans_;   // of the polygons
+    std::vector<glm::dvec2> uvs_;   // of the vertices, where they have texture coordinates
+    std::vector<double> face_uvs_;  // of the corners of one face
+    std::vector<double> pictures_;  // numbers of those that faces have
+    UvSource vertex_uv_, corner_uv_;
 };
 
 }  // namespace
 
-Mesh parse_ply(std::string_view text, const std::string& file) {
+FileMesh parse_ply(std::string_view text, const std::string& file) {
+    text = without_mark(text, file);
+    // Where the first line ends in a carriage return alone, all of the header does, and the body of an ascii file.
+    std::string mended;
+    const bool lone_returns = text.substr(0, 4) == "ply\r" && text.substr(0, 5) != "ply\r\n";
+    if (lone_returns) {
+        mended = text;
+        const std::size_t end = text.find("\rend_header\r");
+        mend_line_ends(mended, end == std::string_view::npos ? text.size() : end + 1);
+        if (end != std::string_view::npos) mended[end + 11] = '\n';
+        text = mended;
+    }
     TextScanner scanner(text);
     const PlyHeader header = read_ply_header(scanner, file);
     if (header.format == PlyFormat::ascii) {
+        if (lone_returns) mend_line_ends(mended, mended.size());
         return PlyBody<AsciiSource>(header, AsciiSource(scanner), file).parse();
     }
     const BinarySource source(scanner, header.format == PlyFormat::big_endian);
     return PlyBody<BinarySource>(header, source, file).parse();
 }
 
-Mesh read_mesh(const std::string& path) {
-    const std::string ending = path.size() < 4 ? std::string() : path.substr(path.size() - 4);
+FileMesh read_mesh(const std::string& path) {
+    std::string ending = path.size() < 4 ? std::string() : path.substr(path.size() - 4);
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
     if (ending == ".ply") return parse_ply(read_file(path), path);
     if (ending == ".obj") return parse_obj(read_file(path), path);
     throw InputError(path + ": expected a mesh file that ends in .ply or .obj");

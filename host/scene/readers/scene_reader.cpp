@@ -9,6 +9,7 @@
 #include "host/scene/readers/camera_reader.hpp"
 #include "host/scene/readers/light_reader.hpp"
 #include "host/scene/readers/material_reader.hpp"
+#include "host/scene/readers/placement.hpp"
 #include "host/scene/readers/shape_reader.hpp"
 #include "host/scene/readers/spectrum_reader.hpp"
 #include "host/scene/settings/object.hpp"
@@ -44,8 +45,11 @@ Scene parse_scene(std::string_view text, const std::string& path, const FlagValu
     if (const auto media = root.find("media")) scene.media = read_media(*media, spectra);
     if (const auto found = root.find("fluorophores")) scene.fluorophores = read_fluorophores(*found, spectra);
     scene.materials = read_materials(root.at("materials"), spectra, scene);
-    if (const auto shapes = root.find("shapes")) read_shapes(*shapes, folder, scene);
-    read_lights(root.at("lights"), spectra, scene);
+    Placement placement;
+    if (const auto shapes = root.find("shapes")) read_shapes(*shapes, folder, scene, placement);
+    read_lights(root.at("lights"), spectra, scene, placement);
+    placement.settle(root.at("camera"), scene);
+    read_emitter_spectra(root.at("lights"), spectra, scene);
     if (scene.shapes.empty()) root.fail("nothing to see: no shapes, and no light with a surface");
     return scene;
 }

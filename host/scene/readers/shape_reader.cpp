@@ -8,6 +8,8 @@
 
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
+#include "host/core/text_input.hpp"
+#include "host/scene/mesh/material_parts.hpp"
 #include "host/scene/mesh/mesh.hpp"
 #include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/input_files.hpp"
@@ -56,7 +58,7 @@ glm::dmat4 read_transform(const JsonCursor& shape) {
 
 struct ShapeFiles {
     explicit ShapeFiles(const std::filesystem::path& folder) : meshes(folder), pictures(folder) {}
-    InputFiles<Mesh, read_mesh> meshes;
+    InputFiles<FileMesh, read_mesh> meshes;
     InputFiles<Picture, read_picture> pictures;
 };
 
@@ -74,9 +76,9 @@ Mesh read_mask(const ObjectReader& where, ShapeFiles& files) {
     }
 }
 
-Mesh read_shape_mesh(const ObjectReader& where, ShapeFiles& files) {
+// Of all kinds but those from mesh files.
+Mesh make_mesh(const ObjectReader& where, ShapeFiles& files) {
     const std::string& kind = where.kind();
-    if (kind == "shape_mesh") return files.meshes.read(where.at("file"));
     if (kind == "shape_box") return make_box(where.vector("size_mm"));
     if (kind == "shape_sphere") return make_sphere(where.number("radius_mm"), where.integer("segments"));
     if (kind == "shape_rectangle") return make_rectangle(where.number("width_mm"), where.number("height_mm"));
@@ -128,7 +130,7 @@ std::vector<Mesh> read_parts(const ObjectReader& where, std::size_t material_cou
 }
 
 // Shapes of several materials: one shape of the scene for each, of one body.
-void read_compound(const ObjectReader& where, const std::string& name, Scene& scene) {
+void read_compound(const ObjectReader& where, const std::string& name, Scene& scene, Placement& placement) {
     const std::vector<int> materials = read_part_materials(where.at("materials"), scene);
     const std::vector<Mesh> parts = read_parts(where, materials.size());
     const glm::dmat4 transform = read_transform(where);
@@ -138,87 +140,148 @@ void read_compound(const ObjectReader& where, const std::string& name, Scene& sc
         shape.name = fmt::format("{} ({})", name, material_of(scene, materials[i]).name);
         shape.material = materials[i];
         shape.body = body;
-        shape.mesh = parts[i];
-        add_shape(where, std::move(shape), transform, scene);
+        placement.add(where, std::move(shape), parts[i], transform);
     }
 }
 
-// Bodies are numbered as they appear; a shape without the key has one of its own.
-int read_body(const JsonCursor& shape, int material, Scene& scene, std::map<std::string, int>& bodies) {
+// Bodies are numbered as they appear; a shape without the key has one of its own. materials: body and material of the
+// shapes before.
+int read_body(const JsonCursor& shape, int material, Scene& scene, std::map<std::string, int>& bodies,
+              std::vector<std::pair<int, int>>& materials) {
     const auto body = shape.find("body");
     if (!body) return scene.body_count++;
     const auto [entry, is_new] = bodies.emplace(body->name(), scene.body_count);
-    if (is_new) return scene.body_count++;
-    for (const Shape& other : scene.shapes) {
-        if (other.body != entry->second || other.material == material) continue;
-        body->fail(fmt::format("expected one material in a body, got \"{}\" and \"{}\"",
-                               scene.materials[static_cast<std::size_t>(other.material)].name,
-                               scene.materials[static_cast<std::size_t>(material)].name));
+    if (is_new) ++scene.body_count;
+    for (const auto& [other_body, other] : materials) {
+        if (other_body != entry->second || other == material) continue;
+        body->fail(fmt::format("expected one material in a body, got \"{}\" and \"{}\"", material_of(scene, other).name,
+                               material_of(scene, material).name));
     }
+    materials.emplace_back(entry->second, material);
     return entry->second;
 }
 
-constexpr const char* too_small = "too small for single precision at this distance from the origin";
+std::string quoted(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 8); ++i)
+        text += (i > 0 ? ", " : "") + (names[i].empty() ? "none" : "\"" + printable(names[i]) + "\"");
+    return text + (names.size() > 8 ? ", ..." : "");
+}
 
-void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count, const char* what) {
-    if (count == 0) return;
-    warn(fmt::format("{}: {} ({}): left out {} triangle{} {}", where.file(), where.path(), name, count,
-                     count == 1 ? "" : "s", what));
+// Materials and objects of a file that the shape does not tell apart.
+void warn_of_one_material(const ObjectReader& where, const std::string& name, const FileMesh& mesh,
+                          const Material& material) {
+    const bool one_body = mesh.objects > 1 && medium_of(material).has_value();
+    if (mesh.materials.size() < 2 && !one_body) return;
+    const std::string objects = mesh.objects > 1 ? fmt::format("{} objects", mesh.objects) : "";
+    const std::string materials = mesh.materials.size() > 1
+                                      ? fmt::format("{} materials ({})", mesh.materials.size(), quoted(mesh.materials))
+                                      : "";
+    warn(fmt::format("{}: {} ({}): {}{}{} of the file become one body of material \"{}\"{}", where.file(), where.path(),
+                     name, materials, materials.empty() || objects.empty() ? "" : " and ", objects, material.name,
+                     materials.empty() ? "" : "; \"materials\" gives each its own"));
+}
+
+// The index in the scene's materials of each of the file's.
+std::vector<int> materials_of_file(const ObjectReader& where, const FileMesh& mesh, const Scene& scene) {
+    const JsonCursor given = where.at("materials");
+    const auto fallback = where.find("material");
+    const auto members = given.members();
+    std::vector<int> materials;
+    for (const std::string& name : mesh.materials) {
+        const auto found =
+            std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == name; });
+        if (found == members.end() && !fallback)
+            given.fail(fmt::format("expected a material for {}, or the key \"material\" for all that are not named",
+                                   name.empty() ? "the faces without usemtl" : "\"" + printable(name) + "\""));
+        materials.push_back(
+            index_of_name(found == members.end() ? *fallback : found->second, "materials", scene.materials));
+    }
+    for (const auto& [name, material] : members) {
+        index_of_name(material, "materials", scene.materials);
+        if (std::find(mesh.materials.begin(), mesh.materials.end(), name) != mesh.materials.end()) continue;
+        const std::string closest = closest_name(name, mesh.materials);
+        const bool has_none = mesh.materials == std::vector<std::string>{""};
+        material.fail(fmt::format("the mesh has no material \"{}\"; {}", printable(name),
+                                  closest.empty() ? "it has " + (has_none ? "none" : quoted(mesh.materials))
+                                                  : "did you mean \"" + closest + "\"?"));
+    }
+    return materials;
+}
+
+// A mesh whose file names materials: one shape of the scene for each of the scene's materials.
+void read_materials_of_mesh(const ObjectReader& where, const std::string& name, const FileMesh& mesh, Scene& scene,
+                            Placement& placement) {
+    const std::vector<int> materials = materials_of_file(where, mesh, scene);
+    std::vector<int> used;  // each once
+    std::vector<std::size_t> part_of_material;
+    std::vector<bool> below_surface;
+    for (const int material : materials) {
+        const auto found = std::find(used.begin(), used.end(), material);
+        part_of_material.push_back(static_cast<std::size_t>(found - used.begin()));
+        if (found != used.end()) continue;
+        used.push_back(material);
+        below_surface.push_back(medium_of(material_of(scene, material)).has_value());
+    }
+    if (const auto body = where.find("body"); body && used.size() > 1)
+        body->fail("expected one material in a body, got a mesh of several");
+    const std::vector<FileMesh> parts = split_mesh(mesh, part_of_material, used.size());
+    const std::vector<std::size_t> first_of_body = joined_parts(parts, below_surface);
+    std::vector<int> bodies;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Shape shape;
+        shape.name = fmt::format("{} ({})", name, material_of(scene, used[i]).name);
+        shape.material = used[i];
+        bodies.push_back(first_of_body[i] < i ? bodies[first_of_body[i]] : scene.body_count++);
+        shape.body = bodies.back();
+        placement.add(where, std::move(shape), parts[i], read_transform(where), true);
+    }
+}
+
+// A mesh file, its remarks said. Throws InputError where the file has no materials to name.
+const FileMesh& read_file_mesh(const ObjectReader& where, const std::string& name, ShapeFiles& files) {
+    const FileMesh& mesh = files.meshes.read(where.at("file"));
+    for (const std::string& remark : mesh.remarks)
+        warn(fmt::format("{}: {} ({}): {}", where.file(), where.path(), name, remark));
+    if (!where.has("material") && !where.has("materials")) where.fail("missing key \"material\"");
+    if (where.has("materials") && mesh.materials.empty())
+        where.at("materials").fail("expected an OBJ file, which names the materials of its faces");
+    return mesh;
 }
 
 }  // namespace
 
-void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene) {
+void read_shapes(const JsonCursor& shapes, const std::filesystem::path& folder, Scene& scene, Placement& placement) {
     ShapeFiles files(folder);
     std::map<std::string, int> bodies;
+    std::vector<std::pair<int, int>> materials;  // body and material of each shape of one material
     std::vector<std::string> names;
     for (const JsonCursor& place : shapes.items()) {
         const ObjectReader where(place, "shape");
         const std::string name = read_own_name(where, fmt::format("shape {}", names.size()), names);
         names.push_back(name);
+        const FileMesh* file = where.kind() == "shape_mesh" ? &read_file_mesh(where, name, files) : nullptr;
         if (where.has("materials")) {
-            read_compound(where, name, scene);
+            if (file != nullptr)
+                read_materials_of_mesh(where, name, *file, scene, placement);
+            else
+                read_compound(where, name, scene, placement);
             continue;
         }
         Shape shape;
-        shape.mesh = read_shape_mesh(where, files);
         shape.name = name;
         shape.material = index_of_name(where.at("material"), "materials", scene.materials);
         shape.two_sided = where.kind() == "shape_mask";
         if (shape.two_sided && as_translucent(material_of(scene, shape.material)) != nullptr)
             where.at("material").fail("expected a black or diffuse material for a mask, got a translucent one");
-        shape.body = read_body(where, shape.material, scene, bodies);
-        add_shape(where, std::move(shape), read_transform(where), scene);
-    }
-}
-
-int add_shape(const JsonCursor& where, Shape shape, const glm::dmat4& transform, Scene& scene) {
-    const std::size_t flat_before = count_degenerate_triangles(shape.mesh);
-    transform_mesh(shape.mesh, transform);
-    for (const glm::vec3& position : shape.mesh.positions_mm) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (coordinate_range.contains(position[axis])) continue;
-            where.fail(fmt::format("expected coordinates {} mm, got {}", coordinate_range.text(), position[axis]));
+        shape.body = read_body(where, shape.material, scene, bodies, materials);
+        if (file != nullptr) {
+            warn_of_one_material(where, name, *file, material_of(scene, shape.material));
+            placement.add(where, std::move(shape), *file, read_transform(where), true);
+        } else {
+            placement.add(where, std::move(shape), make_mesh(where, files), read_transform(where));
         }
     }
-    const Material& material = material_of(scene, shape.material);
-    const bool textured = texture_of(material) != nullptr;
-    if (!textured) shape.mesh.uv.clear();
-    if (textured && shape.mesh.uv.empty())
-        where.fail(
-            fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
-                        "mesh with texture coordinates{}",
-                        material.name, shape.mesh.uv_fault.empty() ? "" : " (" + shape.mesh.uv_fault + ")"));
-    const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
-    const std::size_t flat = std::min(flat_before, dropped);
-    if (shape.mesh.triangles.empty()) {
-        where.fail(flat < dropped ? fmt::format("expected a larger shape: {}", too_small)
-                                  : "expected a triangle with an area, found none");
-    }
-    warn_of_triangles(where, shape.name, flat, "without area");
-    warn_of_triangles(where, shape.name, dropped - flat, too_small);
-    scene.shapes.push_back(std::move(shape));
-    return static_cast<int>(scene.shapes.size()) - 1;
 }
 
 std::string read_own_name(const JsonCursor& where, const std::string& fallback, const std::vector<std::string>& taken) {

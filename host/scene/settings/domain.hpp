@@ -24,7 +24,7 @@ struct NameIn {     // of the names in this part of the scene: "media"
     std::string part;
 };
 struct Vector {  // of three numbers
-    NumberRange range = coordinate_range;
+    NumberRange range = place_range;
 };
 struct Direction {};  // of any length but zero
 // What another declaration of the schema says: an object, or a value that its reader checks.

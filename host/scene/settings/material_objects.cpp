@@ -87,7 +87,10 @@ Objects materials() {
          "top left corner at -x and -z and over meshes by their texture coordinates.",
          {{"texture", Text{}, required, "A PNG file of at most 8192 x 8192 pixels."},
           {"black", up_to_1, required, "Where the luminance is 0."},
-          {"white", up_to_1, required, "Where it is 1."}}},
+          {"white", up_to_1, required, "Where it is 1."},
+          {"wrap", OneWord{words_of<TextureWrap>}, word_of(TextureWrap::repeat),
+           "What lies where the texture coordinates of a mesh are beyond 0 to 1: the picture again, or its edge drawn "
+           "out."}}},
     };
 }
 

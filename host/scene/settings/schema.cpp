@@ -36,6 +36,7 @@ constexpr const char* special_values = R"({
         "oneOf": [{"$ref": "#/$defs/factor"},
                   {"type": "array", "items": {"$ref": "#/$defs/factor"}, "minItems": 3, "maxItems": 3}]
     },
+    "materials_of_mesh": {"type": "object", "additionalProperties": {"$ref": "#/$defs/name"}},
     "name": {"type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9_ .-]{0,63}$"}
 })";
 

@@ -64,12 +64,24 @@ Objects transforms() {
     };
 }
 
+ObjectDeclaration mesh() {
+    ObjectDeclaration object = shape("mesh", "Triangles and polygons from a file, one unit of which is taken as 1 mm.",
+                                     {{"file", Text{}, required, "A PLY or OBJ file."}},
+                                     "A name in materials. Needed unless `materials` names one for all faces.");
+    for (Key& key : object.keys)
+        if (key.name == "material") key.fallback = optional;
+    object.keys.push_back({"materials", Declared{"materials_of_mesh"}, optional,
+                           "For materials of an OBJ file, by their names after usemtl, names in the scene's materials. "
+                           "All others have `material`."});
+    object.rules = R"({"anyOf": [{"required": ["material"]}, {"required": ["materials"]}]})";
+    return object;
+}
+
 }  // namespace
 
 Objects shape_objects() {
     Objects objects{
-        shape("mesh", "Triangles and polygons from a file, one unit of which is taken as 1 mm.",
-              {{"file", Text{}, required, "A PLY or OBJ file."}}),
+        mesh(),
         shape("box", "Centred on the origin.", {size("Along x, y and z.")}),
         shape("sphere", "Centred on the origin.", {radius("Of its surface."), segments()}),
         shape("rectangle", flat, {along_x, along_z}),

@@ -1,0 +1,24 @@
+// Which way round the triangles of a body are.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "host/scene/scene.hpp"
+
+namespace stokes {
+
+struct Orientation {
+    std::size_t turned = 0;        // triangles
+    std::size_t inconsistent = 0;  // edges whose two triangles face opposite sides
+    glm::dvec3 place_mm{0.0};      // the middle of one of them
+};
+
+// Turns over the closed parts of a body that face inward, with all that lies within them; a cavity within a part that
+// faces outward is left, and so is what has the eye inside. A part is what hangs together by edges of two triangles; it
+// is closed where triangles pass each of its edges in both directions equally often, and faces inward where the volume
+// within is negative. Vertices in the same place are one.
+Orientation turn_outward(const std::vector<Mesh*>& meshes, const glm::dvec3& eye_mm);
+
+}  // namespace stokes

@@ -1,0 +1,143 @@
+#include "host/scene/readers/placement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <variant>
+
+#include "host/core/log.hpp"
+#include "host/scene/mesh/mesh.hpp"
+#include "host/scene/mesh/orientation.hpp"
+#include "host/scene/mesh/scene_origin.hpp"
+
+namespace stokes {
+namespace {
+
+constexpr const char* too_small = "too small for single precision at this distance from the middle of the scene";
+
+void warn_at(const JsonCursor& where, const std::string& name, const std::string& what) {
+    warn(fmt::format("{}: {} ({}): {}", where.file(), where.path(), name, what));
+}
+
+void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count, const char* what) {
+    if (count == 0) return;
+    warn_at(where, name, fmt::format("left out {} triangle{} {}", count, count == 1 ? "" : "s", what));
+}
+
+// Of the vertices that triangles use.
+Bounds bounds_of(const FileMesh& mesh, const glm::dmat4& transform) {
+    Bounds bounds{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    for (const glm::uvec3& triangle : mesh.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 placed(transform * glm::dvec4(mesh.positions[triangle[k]], 1.0));
+            bounds.low_mm = glm::min(bounds.low_mm, placed);
+            bounds.high_mm = glm::max(bounds.high_mm, placed);
+        }
+    return bounds;
+}
+
+void check_range(const JsonCursor& where, const glm::dvec3& place, const glm::dvec3& origin_mm) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (coordinate_range.contains(place[axis])) continue;
+        const std::string from = origin_mm == glm::dvec3(0.0) ? ""
+                                                              : fmt::format(" from ({:.10g}, {:.10g}, {:.10g}) mm on",
+                                                                            origin_mm.x, origin_mm.y, origin_mm.z);
+        where.fail(fmt::format("expected coordinates {} mm{}, got {}", coordinate_range.text(), from, place[axis]));
+    }
+}
+
+void move_camera(const JsonCursor& where, Camera& camera, const glm::dvec3& origin_mm) {
+    camera.position_mm -= origin_mm;
+    camera.target_mm -= origin_mm;
+    check_range(where, camera.position_mm, origin_mm);
+}
+
+void move_beams(Scene& scene) {
+    for (Light& light : scene.lights)
+        std::visit(
+            [&](auto& kind) {
+                if constexpr (std::is_base_of_v<Beam, std::decay_t<decltype(kind)>>)
+                    kind.position_mm -= scene.origin_mm;
+            },
+            light.kind);
+}
+
+}  // namespace
+
+int Placement::add(const JsonCursor& where, Shape shape, FileMesh mesh, const glm::dmat4& transform, bool from_file) {
+    shapes_.push_back({where, std::move(shape), std::move(mesh), transform, from_file});
+    return static_cast<int>(shapes_.size()) - 1;
+}
+
+int Placement::add(const JsonCursor& where, Shape shape, const Mesh& mesh, const glm::dmat4& transform) {
+    return add(where, std::move(shape), as_file_mesh(mesh), transform);
+}
+
+void Placement::settle(const JsonCursor& camera, Scene& scene) {
+    std::vector<Bounds> bounds;
+    for (const Placed& placed : shapes_) bounds.push_back(bounds_of(placed.mesh, placed.transform));
+    scene.origin_mm = scene_origin_mm(scene.camera, bounds);
+    move_camera(camera, scene.camera, scene.origin_mm);
+    move_beams(scene);
+    for (Placed& placed : shapes_) move_to_origin(placed, scene);
+    turn_inside_out(scene);
+}
+
+void Placement::move_to_origin(Placed& placed, Scene& scene) const {
+    const JsonCursor& where = placed.where;
+    Shape& shape = placed.shape;
+    const Material& material = scene.materials[static_cast<std::size_t>(shape.material)];
+    const DiffuseMaterial* diffuse = as_diffuse(material);
+    const bool textured = texture_of(material) != nullptr;
+    if (!textured) placed.mesh.uv.clear();
+    shape.texture_repeats = textured && placed.from_file && diffuse->wrap == TextureWrap::repeat;
+    const std::size_t flat_before = count_flat_triangles(placed.mesh.positions, placed.mesh.triangles);
+    glm::dmat4 transform = placed.transform;
+    if (scene.origin_mm != glm::dvec3(0.0)) transform = glm::translate(glm::dmat4(1.0), -scene.origin_mm) * transform;
+    shape.mesh = placed_mesh(placed.mesh, transform, shape.texture_repeats);
+    placed.mesh = {};
+    for (const glm::uvec3& triangle : shape.mesh.triangles)
+        for (int k = 0; k < 3; ++k)
+            check_range(where, glm::dvec3(shape.mesh.positions_mm[triangle[k]]), scene.origin_mm);
+    if (textured && shape.mesh.uv.empty())
+        where.fail(
+            fmt::format("the texture of material \"{}\" needs a shape with coordinates: a rectangle, a disk or a "
+                        "mesh with texture coordinates{}",
+                        material.name, shape.mesh.uv_fault.empty() ? "" : " (" + shape.mesh.uv_fault + ")"));
+    const std::size_t dropped = drop_degenerate_triangles(shape.mesh);
+    const std::size_t flat = std::min(flat_before, dropped);
+    if (shape.mesh.triangles.empty()) {
+        where.fail(flat < dropped ? fmt::format("expected a larger shape: {}", too_small)
+                                  : "expected a triangle with an area, found none");
+    }
+    warn_of_triangles(where, shape.name, flat, "without area");
+    warn_of_triangles(where, shape.name, dropped - flat, too_small);
+    scene.shapes.push_back(std::move(shape));
+}
+
+void Placement::turn_inside_out(Scene& scene) const {
+    std::vector<bool> done(static_cast<std::size_t>(scene.body_count), false);
+    for (std::size_t i = 0; i < shapes_.size(); ++i) {
+        const Shape& shape = scene.shapes[i];
+        const auto body = static_cast<std::size_t>(shape.body);
+        if (!shapes_[i].from_file || done[body]) continue;
+        done[body] = true;
+        std::vector<Mesh*> meshes;
+        for (Shape& part : scene.shapes)
+            if (part.body == shape.body) meshes.push_back(&part.mesh);
+        const Orientation found = turn_outward(meshes, scene.camera.position_mm);
+        if (found.turned > 0)
+            warn_at(shapes_[i].where, shape.name,
+                    fmt::format("turned over {} triangle{} of a closed surface that faced inward", found.turned,
+                                found.turned == 1 ? "" : "s"));
+        const glm::dvec3 at = found.place_mm + scene.origin_mm;
+        if (found.inconsistent > 0)
+            warn_at(shapes_[i].where, shape.name,
+                    fmt::format("its triangles do not all face one side: they change sides at {} edge{}, one at "
+                                "({:.10g}, {:.10g}, {:.10g}) mm, and are black from behind",
+                                found.inconsistent, found.inconsistent == 1 ? "" : "s", at.x, at.y, at.z));
+    }
+}
+
+}  // namespace stokes
