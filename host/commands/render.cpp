@@ -17,6 +17,7 @@
 #include "host/render/assumptions.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
+#include "host/render/translucent_bodies.hpp"
 #include "host/render/transport/transport_model.hpp"
 #include "host/scene/readers/scene_reader.hpp"
 
@@ -119,6 +120,7 @@ void render(const RenderOptions& options) {
     stats.set_up_s = set_up_s;
     if (!options.quiet) say_what_was_dropped(stats);
     warn_about(stats.ledger);
+    for (const std::string& line : unmet_body_lines(scene, renderer->unmet_bodies())) warn(line);
     write_results(options.files, scene, film, stats, curve.get(), options.quiet);
 }
 
