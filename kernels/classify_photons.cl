@@ -43,11 +43,12 @@ FORCE_INLINE uint walk_on(__global const BodyRecord* bodies, uint body, __global
 // Reads: list [round.count], hits, flux [W/nm, paths], triangles, shapes, materials, bodies, spectra (excitation,
 //   sigma_t).
 // Writes: points [paths], departures (the body that is met), entry_lists [round.count]: STOKES_LIST_*, ledgers (paths
-//   that end here), rays (specular reflection; a mirrored path goes on with the flux it has).
+//   that end here), rays (specular reflection; a mirrored path goes on with the flux it has), met_bodies [bodies]: 1
+//   for each whose front a path meets, where the round notes them.
 // Light that meets the back of a surface is absorbed, unless it is two-sided.
 __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMENTS, __global const BodyRecord* bodies,
                                __global const uint* list, PATH_ARGUMENTS, __global const Hit* hits,
-                               __global SurfacePoint* points, __global uchar* entry_lists) {
+                               __global SurfacePoint* points, __global uchar* entry_lists, __global uint* met_bodies) {
     const uint i = (uint)get_global_id(0);
     if (i >= round.count) return;
     const uint path = list[i];
@@ -82,6 +83,7 @@ __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMEN
         (SurfacePoint){position.x, position.y, position.z, material, normal.x, normal.y, normal.z, tri->body};
 
     const float cos_in = min(-dot(direction, normal), 1.0f);
+    if (round.notes_bodies != 0u && cos_in > 0.0f) met_bodies[tri->body] = 1u;
     const Random4 draw = random4(pass->seed, pass->pass, path, round.event, RNG_BRANCH);
     const uint kind = cos_in > 0.0f
                           ? photon_event(&materials[material], spectra, round.branches != 0u, cos_in, flux[path], draw)

@@ -11,26 +11,28 @@
 #include "shared/ray.h"
 
 // Writes the state of a path that starts along a ray; inside: as in LightRecord; photon_flux: of one of its light's
-// photons.
+// photons. What the ray leaves out of that has escaped.
 FORCE_INLINE void start_path(uint path, EmittedRay ray, uint inside, float16 photon_flux,
                              __global const PassConstants* pass, PATH_ARGUMENTS, __global uint* list) {
     const float16 start = photon_flux * ray.share;
     const float2 total = light_of(start, pass);
+    const float2 passing = ray.passing > 0.0f ? light_of(photon_flux * ray.passing, pass) : (float2)(0.0f);
     const bool dark = !(total.x > 0.0f);
     rays[path] = (Ray){ray.origin.x,    ray.origin.y,    ray.origin.z,    0.0f,
                        ray.direction.x, ray.direction.y, ray.direction.z, dark ? -1.0f : INFINITY};
     departures[path] = (Departure){ray.normal.x, ray.normal.y, ray.normal.z, ray.body, inside, 0u, {0u, 0u}};
     flux[path] = start;
     const LightSum none = {0.0f, 0.0f};
-    ledgers[path] = (PathLedger){{total.x, total.y},
+    const uint ended = passing.x > 0.0f ? STOKES_FATE_ESCAPED : STOKES_FATE_ABSORBED;
+    ledgers[path] = (PathLedger){{total.x + passing.x, total.y + passing.y},
+                                 none,
+                                 none,
+                                 {passing.x, passing.y},
                                  none,
                                  none,
                                  none,
                                  none,
-                                 none,
-                                 none,
-                                 none,
-                                 dark ? STOKES_FATE_ABSORBED : STOKES_FATE_ALIVE,
+                                 dark ? ended : STOKES_FATE_ALIVE,
                                  0u,
                                  dark ? 0u : 1u,
                                  total.x / 16.0f,
@@ -97,4 +99,22 @@ __kernel void find_places(__global const PassConstants* pass, EMISSION_ARGUMENTS
     cell_of_path[path] = c;
     places[path] = place_of_point(point_of_photon(pass, &cells[c], c, path - first_photons[c]), &cells[c],
                                   lights[cells[c].light].dimensions);
+}
+
+// Work-items: count. Reads: targets [count], lights, light_areas, triangles, light: which one, places_on_light [count]:
+// in [0, 1]^2, where on a light with a surface the photon starts. Writes: places [count] in the light's cube, from
+// which photons go through the targets, but for what lies between, and densities [count]: that share of all the light's
+// photons which goes through the front of a surface there [1/mm^2]; 0: none does.
+__kernel void find_emission_places(uint count, uint light, __global const LightRecord* lights,
+                                   __global const float* light_areas, __global const Triangle* triangles,
+                                   __global const EmissionTarget* targets, __global const float2* places_on_light,
+                                   __global float4* places, __global float* densities) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= count) return;
+    const EmissionTarget target = targets[i];
+    const EmissionPlace found =
+        emission_place((Lights){lights, light_areas, triangles}, light, places_on_light[i],
+                       (float3)(target.x, target.y, target.z), (float3)(target.nx, target.ny, target.nz));
+    places[i] = clamp(found.place, 0.0f, 1.0f);
+    densities[i] = found.density;
 }

@@ -58,6 +58,13 @@ void check_same_size(const CompareOptions& options, const ExrImage& picture, con
         throw InputError(fmt::format("expected pictures of the same size; {} has {} x {} pixels, {} {} x {}",
                                      options.picture_file, picture.width, picture.height, options.reference_file,
                                      reference.width, reference.height));
+    const PictureFrame &a = picture.frame, &b = reference.frame;
+    if (a.left != b.left || a.top != b.top || a.width != b.width || a.height != b.height)
+        throw InputError(
+            fmt::format("expected pictures of the same window; {} holds {} x {} pixels from ({}, {}) of a "
+                        "picture of {} x {}, {} from ({}, {}) of {} x {}",
+                        options.picture_file, picture.width, picture.height, a.left, a.top, a.width, a.height,
+                        options.reference_file, b.left, b.top, b.width, b.height));
 }
 
 void write_map(const Comparison& comparison) {

@@ -35,6 +35,12 @@ ErrorCurve::ErrorCurve(const std::string& reference_file, const std::string& csv
     if (reference.width != film.width || reference.height != film.height)
         throw InputError(fmt::format("{}: expected {} x {} pixels, as the render has, got {} x {}", reference_file,
                                      film.width, film.height, reference.width, reference.height));
+    const PictureFrame& frame = reference.frame;
+    if (frame.left != 0 || frame.top != 0 || frame.width != film.width || frame.height != film.height)
+        throw InputError(fmt::format(
+            "{}: expected the whole picture, as the render makes it, got {} x {} pixels from "
+            "({}, {}) of {} x {}",
+            reference_file, reference.width, reference.height, frame.left, frame.top, frame.width, frame.height));
     const std::vector<std::string> missing = missing_layers(layers_, reference.layers);
     if (!missing.empty()) throw InputError(fmt::format("{}: no layer {}", reference_file, shown_layers(missing)));
     check_finite(reference_file, reference.layers, layers_);

@@ -17,6 +17,7 @@
 #include "host/render/conflicts.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
+#include "host/render/translucent_bodies.hpp"
 #include "host/render/transport/transport_model.hpp"
 #include "host/scene/readers/scene_reader.hpp"
 
@@ -118,6 +119,7 @@ void render(const RenderOptions& options) {
     const auto words = [&] {
         if (!options.quiet) say_what_was_dropped(stats);
         warn_about(stats.ledger);
+        for (const std::string& line : unmet_body_lines(scene, renderer->unmet_bodies())) warn(line);
         warn_about(film);
     };
     try {

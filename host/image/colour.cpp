@@ -64,6 +64,18 @@ glm::dvec3 rec709_of_xyz(const glm::dvec3& xyz) { return rec709_from_xyz() * xyz
 
 glm::dvec3 xyz_of_rec709(const glm::dvec3& rgb) { return xyz_from_rec709() * rgb; }
 
+std::optional<glm::dmat3> xyz_from_primaries(const Primaries& primaries) {
+    const auto direction = [](const glm::dvec2& at) { return glm::dvec3(at.x, at.y, 1.0 - at.x - at.y); };
+    const glm::dmat3 columns(direction(primaries.red), direction(primaries.green), direction(primaries.blue));
+    // Chromaticities are single precision: a smaller area than this is none.
+    if (!(std::abs(glm::determinant(columns)) > 1e-6) || !(primaries.white.y > 0.0)) return std::nullopt;
+    const glm::dvec3 weight = glm::inverse(columns) * (direction(primaries.white) / primaries.white.y);
+    const glm::dmat3 matrix(columns[0] * weight.x, columns[1] * weight.y, columns[2] * weight.z);
+    for (int c = 0; c < 3; ++c)
+        if (!std::isfinite(matrix[c].x + matrix[c].y + matrix[c].z) || weight[c] == 0.0) return std::nullopt;
+    return matrix;
+}
+
 glm::dvec3 oklab_of_rec709(const glm::dvec3& rgb) {
     const glm::dvec3 cones = rgb * cones_from_rec709;
     return glm::dvec3(std::cbrt(cones.x), std::cbrt(cones.y), std::cbrt(cones.z)) * oklab_from_cube_roots;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 
 #include "host/core/spectrum.hpp"
@@ -35,6 +36,14 @@ glm::dvec3 xyz_of(const Spectrum& radiance);
 glm::dvec3 rec709_of_xyz(const glm::dvec3& xyz);
 glm::dvec3 xyz_of_rec709(const glm::dvec3& rgb);
 const glm::dmat3& rec709_from_xyz();  // the matrix itself, columns first as GLM has them
+
+// Chromaticities (x, y).
+struct Primaries {
+    glm::dvec2 red, green, blue, white;
+};
+// XYZ of linear R, G, B where (1, 1, 1) is their white of luminance 1. None where they mix no such white. Primaries
+// without luminance, y = 0, are allowed: ((1, 0), (0, 1), (0, 0), (1/3, 1/3)) are those of XYZ itself.
+std::optional<glm::dmat3> xyz_from_primaries(const Primaries& primaries);
 
 // Lightness L and the opponent axes a, b of linear Rec. 709 in Oklab, and back (B. Ottosson, "A perceptual
 // color space for image processing", 2020). The angle of (a, b) is the hue; defined outside the gamut too.

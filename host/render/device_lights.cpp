@@ -41,6 +41,23 @@ double add_areas(LightRecord& record, const std::vector<Triangle>& triangles, st
     return area;
 }
 
+// Of where its photons start.
+void set_bounds(LightRecord& record, const EmissionBounds& bounds) {
+    record.restricted = bounds.window || bounds.ball ? 1u : 0u;
+    record.part = static_cast<float>(bounds.part);
+    if (bounds.window) {
+        const glm::vec3 t(bounds.window->centre_mm), u(bounds.window->half_u_mm), v(bounds.window->half_v_mm);
+        record.tx = t.x, record.ty = t.y, record.tz = t.z;
+        record.wux = u.x, record.wuy = u.y, record.wuz = u.z;
+        record.wvx = v.x, record.wvy = v.y, record.wvz = v.z;
+    }
+    if (bounds.ball) {
+        const glm::vec3 t(bounds.ball->centre_mm);
+        record.tx = t.x, record.ty = t.y, record.tz = t.z;
+        record.target_mm = static_cast<float>(bounds.ball->radius_mm);
+    }
+}
+
 double product_of_half_axes(const Beam& beam) { return glm::length(beam.half_u_mm) * glm::length(beam.half_v_mm); }
 
 }  // namespace
@@ -50,7 +67,8 @@ unsigned place_dimensions(const Light& light) {
 }
 
 LightTables light_tables(const Scene& scene, const std::vector<double>& probability,
-                         const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& first_triangle) {
+                         const std::vector<EmissionBounds>& bounds, const std::vector<Triangle>& triangles,
+                         const std::vector<std::uint32_t>& first_triangle) {
     LightTables tables;
     double cumulative = 0.0;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
@@ -59,6 +77,7 @@ LightTables light_tables(const Scene& scene, const std::vector<double>& probabil
         cumulative += probability[i];
         record.cumulative_probability = i + 1 == scene.lights.size() ? 1.0f : static_cast<float>(cumulative);
         record.dimensions = place_dimensions(light);
+        set_bounds(record, bounds[i]);
         const auto surface = [&](const SurfaceLight& of) {
             const auto shape = static_cast<std::size_t>(of.shape);
             record.kind = STOKES_LIGHT_SURFACE;

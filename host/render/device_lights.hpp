@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/render/emission_bounds.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/light.h"
 #include "kernels/shared/ray.h"
@@ -21,8 +22,10 @@ struct LightTables {
 // Coordinates of a place in the light's cube (lib/lights.clh): 4 of a surface, which emits in many directions, else 2.
 unsigned place_dimensions(const Light& light);
 
-// probability: of a photon to start at each light; first_triangle: of each shape in triangles, and one past the last.
+// probability: of a photon to start at each light; bounds: where on it; first_triangle: of each shape in triangles, and
+// one past the last.
 LightTables light_tables(const Scene& scene, const std::vector<double>& probability,
-                         const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& first_triangle);
+                         const std::vector<EmissionBounds>& bounds, const std::vector<Triangle>& triangles,
+                         const std::vector<std::uint32_t>& first_triangle);
 
 }  // namespace stokes

@@ -54,6 +54,16 @@ std::uint32_t shape_flags(const Scene& scene, const Shape& shape, const Contacts
            (contacts.solid[static_cast<std::size_t>(shape.body)] ? STOKES_TRIANGLE_SOLID : 0u);
 }
 
+// The probabilities of lights where each has photons for what it emits within its bounds.
+std::vector<double> within(const std::vector<EmissionBounds>& bounds, std::vector<double> probability) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < bounds.size(); ++i) sum += probability[i] * bounds[i].part;
+    const bool all = std::all_of(bounds.begin(), bounds.end(), [](const EmissionBounds& b) { return b.part == 1.0; });
+    if (!all)
+        for (std::size_t i = 0; i < bounds.size(); ++i) probability[i] *= bounds[i].part / sum;
+    return probability;
+}
+
 }  // namespace
 
 std::vector<Triangle> scene_triangles(const Scene& scene, const Contacts& contacts) {
@@ -100,8 +110,9 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     materials = Buffer<MaterialRecord>(device, "materials", records);
     textures = upload_textures(device, scene);
 
-    light_probability = light_probabilities(scene);
-    LightTables tables_of_lights = light_tables(scene, light_probability, all, first_triangle);
+    const std::vector<EmissionBounds> bounds = emission_bounds(scene);
+    light_probability = within(bounds, light_probabilities(scene));
+    LightTables tables_of_lights = light_tables(scene, light_probability, bounds, all, first_triangle);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         tables_of_lights.records[i].inside = walked_container(scene, container_of_light(scene, scene.lights[i]));
     lights = Buffer<LightRecord>(device, "lights", tables_of_lights.records);

@@ -5,6 +5,7 @@
 #include <queue>
 #include <random>
 #include <tuple>
+#include <utility>
 
 namespace stokes {
 
@@ -13,16 +14,21 @@ namespace {
 // Slices along a coordinate by which the worth of a cut is judged: two alone would not see what lies in the middle.
 constexpr std::size_t slices = 4;
 
-// A cell with fewer samples is not cut, and one counts this many samples of its parent's density beside its own.
+// A cell with fewer samples is not cut, and one counts this many samples of its parent's density beside its own: of
+// trial photons, which lie evenly, none of seeds, which lie only where there is something.
 constexpr std::size_t least_samples = 48;
-constexpr double parent_samples = 12.0;
+constexpr double parent_samples_of_trials = 12.0, parent_samples_of_seeds = 0.0;
 
 // Cuts that lessen the root of the variance by a smaller share are not made.
 constexpr double least_gain = 1e-5;
 
-constexpr float smallest_edge = 0x1p-10f;
+constexpr float smallest_edge = 0x1p-16f;
 
-struct Box {
+double root(double volume, double square) { return std::sqrt(volume * square); }
+
+}  // namespace
+
+struct EmissionCells::Box {
     std::uint32_t light = 0;
     std::array<float, 4> low{0.0f, 0.0f, 0.0f, 0.0f}, size{1.0f, 1.0f, 1.0f, 1.0f};
     double volume = 0.0;             // probability under random emission
@@ -32,12 +38,11 @@ struct Box {
     double gain = 0.0;
 };
 
-double root(double volume, double square) { return std::sqrt(volume * square); }
-
-class Partition {
+class EmissionCells::Partition {
   public:
-    Partition(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples)
-        : lights_(lights), samples_(samples) {
+    Partition(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
+              double parent_samples)
+        : lights_(lights), samples_(samples), parent_samples_(parent_samples) {
         std::stable_sort(samples_.begin(), samples_.end(),
                          [](const EmissionSample& a, const EmissionSample& b) { return a.light < b.light; });
         std::size_t at = 0;
@@ -49,9 +54,11 @@ class Partition {
             while (at < samples_.size() && samples_[at].light == i) box.square += samples_[at++].square;
             box.end = at;
             if (!(box.volume > 0.0)) continue;
+            add_cut_out(box);
+        }
+        for (Box& box : boxes_) {
             judge(box);
             all_ += root(box.volume, box.square);
-            boxes_.push_back(box);
         }
     }
 
@@ -73,6 +80,24 @@ class Partition {
     }
 
   private:
+    // The light's region, and what lies beside it along each coordinate.
+    void add_cut_out(Box inner) {
+        const EmittingLight& light = lights_[inner.light];
+        for (std::size_t d = 0; d < light.dimensions; ++d) {
+            if (light.region_low[d] > 0.0f) {
+                const auto [low, high] = parts(inner, d, light.region_low[d]);
+                boxes_.push_back(low);
+                inner = high;
+            }
+            if (light.region_high[d] < 1.0f) {
+                const auto [low, high] = parts(inner, d, light.region_high[d]);
+                boxes_.push_back(high);
+                inner = low;
+            }
+        }
+        boxes_.push_back(inner);
+    }
+
     // What a cut would gain along each coordinate, and the best.
     void judge(Box& box) const {
         box.gain = 0.0;
@@ -97,36 +122,44 @@ class Partition {
     }
 
     // A part's share of the square from its own samples and from what its parent lets expect.
-    static double damped(double square, double count, double expected) {
-        return (count * square + parent_samples * expected) / (count + parent_samples);
+    double damped(double square, double count, double expected) const {
+        const double all = count + parent_samples_;
+        return all > 0.0 ? (count * square + parent_samples_ * expected) / all : 0.0;
     }
 
     // Box i becomes its lower half, the upper half is added.
     void halve(std::size_t i) {
-        const Box whole = boxes_[i];
-        const std::size_t d = whole.cut;
-        const float middle = whole.low[d] + 0.5f * whole.size[d];
+        const std::size_t d = boxes_[i].cut;
+        auto [low, high] = parts(boxes_[i], d, boxes_[i].low[d] + 0.5f * boxes_[i].size[d]);
+        judge(low), judge(high);
+        boxes_[i] = low;
+        boxes_.push_back(high);
+    }
+
+    // Below and above a place along coordinate d, with the samples of each.
+    std::pair<Box, Box> parts(const Box& whole, std::size_t d, float place) {
         const auto first = samples_.begin() + static_cast<std::ptrdiff_t>(whole.begin);
         const auto last = samples_.begin() + static_cast<std::ptrdiff_t>(whole.end);
         const auto upper =
-            std::stable_partition(first, last, [&](const EmissionSample& sample) { return sample.place[d] < middle; });
-        Box halves[2] = {whole, whole};
-        halves[0].end = halves[1].begin = static_cast<std::size_t>(upper - samples_.begin());
-        halves[1].low[d] = middle;
-        for (Box& half : halves) {
-            half.size[d] = 0.5f * whole.size[d];
-            half.volume = 0.5 * whole.volume;
+            std::stable_partition(first, last, [&](const EmissionSample& sample) { return sample.place[d] < place; });
+        std::pair<Box, Box> two = {whole, whole};
+        two.first.end = two.second.begin = static_cast<std::size_t>(upper - samples_.begin());
+        two.second.low[d] = place;
+        two.first.size[d] = place - whole.low[d];
+        two.second.size[d] = whole.low[d] + whole.size[d] - place;
+        for (Box* part : {&two.first, &two.second}) {
+            const double share = static_cast<double>(part->size[d]) / static_cast<double>(whole.size[d]);
+            part->volume = share * whole.volume;
             double square = 0.0;
-            for (std::size_t k = half.begin; k < half.end; ++k) square += samples_[k].square;
-            half.square = damped(square, static_cast<double>(half.end - half.begin), 0.5 * whole.square);
-            judge(half);
+            for (std::size_t k = part->begin; k < part->end; ++k) square += samples_[k].square;
+            part->square = damped(square, static_cast<double>(part->end - part->begin), share * whole.square);
         }
-        boxes_[i] = halves[0];
-        boxes_.push_back(halves[1]);
+        return two;
     }
 
     const std::vector<EmittingLight>& lights_;
     std::vector<EmissionSample> samples_;
+    double parent_samples_;
     std::vector<Box> boxes_;
     double all_ = 0.0;
 };
@@ -134,7 +167,7 @@ class Partition {
 // Each cell has at least one photon in every pass.
 constexpr double least_photons = 1.5;
 
-EmissionCell record_of(const Box& box, double photons) {
+EmissionCell EmissionCells::record_of(const Box& box, double photons) {
     EmissionCell cell{};
     std::copy(box.low.begin(), box.low.end(), cell.low);
     std::copy(box.size.begin(), box.size.end(), cell.size);
@@ -144,15 +177,25 @@ EmissionCell record_of(const Box& box, double photons) {
     return cell;
 }
 
-}  // namespace
-
 EmissionCells EmissionCells::stratified(const std::vector<EmittingLight>& lights, std::uint32_t photons) {
     return aimed(lights, {}, 1.0, lights.size(), photons);
 }
 
 EmissionCells EmissionCells::aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
                                    double uniform_share, std::size_t most_cells, std::uint32_t photons) {
-    std::vector<Box> boxes = Partition(lights, samples).cut(std::min<std::size_t>(most_cells, photons / 3));
+    return of_boxes(
+        Partition(lights, samples, parent_samples_of_trials).cut(std::min<std::size_t>(most_cells, photons / 3)),
+        uniform_share, photons);
+}
+
+EmissionCells EmissionCells::seeded(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& seeds,
+                                    double uniform_share, std::size_t most_cells, std::uint32_t photons) {
+    return of_boxes(
+        Partition(lights, seeds, parent_samples_of_seeds).cut(std::min<std::size_t>(most_cells, photons / 3)),
+        uniform_share, photons);
+}
+
+EmissionCells EmissionCells::of_boxes(std::vector<Box> boxes, double uniform_share, std::uint32_t photons) {
     const double least_share = least_photons / photons, rest = 1.0 - least_share * static_cast<double>(boxes.size());
     if (rest < 0.5) return {};
     // Cells in order of place lie side by side in memory, so that neighbouring work-items do the same.

@@ -23,6 +23,8 @@ struct EmissionSample {
 struct EmittingLight {
     double probability = 0.0;  // of a photon of random emission to be its own; together 1
     unsigned dimensions = 2;   // coordinates of its places, up to 4
+    // A part of its cube that cells are cut out for before all else: small, and most of what matters lies in it.
+    std::array<float, 4> region_low{0.0f, 0.0f, 0.0f, 0.0f}, region_high{1.0f, 1.0f, 1.0f, 1.0f};
 };
 
 class EmissionCells {
@@ -40,6 +42,10 @@ class EmissionCells {
     static EmissionCells aimed(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& samples,
                                double uniform_share, std::size_t most_cells, std::uint32_t photons);
 
+    // The same from seeds, which are all that there is: a part without any has photons for its size alone.
+    static EmissionCells seeded(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& seeds,
+                                double uniform_share, std::size_t most_cells, std::uint32_t photons);
+
     const std::vector<EmissionCell>& records() const { return records_; }
     // Share of the photons, in the order of records; their sum is 1.
     const std::vector<double>& shares() const { return shares_; }
@@ -50,6 +56,11 @@ class EmissionCells {
     std::vector<std::uint32_t> first_photons(std::uint32_t seed, std::uint32_t pass) const;
 
   private:
+    struct Box;
+    class Partition;
+    static EmissionCells of_boxes(std::vector<Box> boxes, double uniform_share, std::uint32_t photons);
+    static EmissionCell record_of(const Box& box, double photons);
+
     std::uint32_t photons_ = 0;
     std::vector<EmissionCell> records_;
     std::vector<double> shares_;

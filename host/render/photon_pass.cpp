@@ -1,6 +1,9 @@
 #include "host/render/photon_pass.hpp"
 
+#include <algorithm>
+
 #include "host/core/error.hpp"
+#include "host/render/translucent_bodies.hpp"
 
 namespace stokes {
 
@@ -23,7 +26,10 @@ PhotonPass::PhotonPass(const Device& device, const Scene& scene, const DeviceSce
       paths_(device, photons),
       maps_(make_maps(device, first_slots, builder, hash)),
       exits_(device, on_device.rays.kernels),
-      transports_(make_transports(device, scene, on_device)) {
+      transports_(make_transports(device, scene, on_device)),
+      translucent_bodies_(translucent_bodies(scene)),
+      met_bodies_(device, "bodies that photons met",
+                  std::vector<std::uint32_t>(static_cast<std::size_t>(std::max(scene.body_count, 1)), 0u)) {
     sampling_.store_direct = resolved(scene.render).direct == Direct::photons;
     const Program emission(device, "emit_photons.cl");
     emit_ = emission.kernel("emit_photons");
@@ -55,6 +61,7 @@ PhotonAccount PhotonPass::trace(const PathSampling& sampling) {
         round.last = round.event + 1 >= round_limit ? 1 : 0;
         round.count = alive;
         round.branches = sampling.both_branches ? 1 : 0;
+        round.notes_bodies = unmet_bodies_.empty() ? 0 : 1;
         trace_rays(alive);
         const ListCounts lists = classify(round);
         const SubsurfaceEvent event{round, lists, sampling, common_, maps_, exits_, counts};
@@ -65,11 +72,24 @@ PhotonAccount PhotonPass::trace(const PathSampling& sampling) {
         alive = lists.alive;
     }
     common_ = {};
+    forget_met_bodies();
     PhotonAccount account = paths_.sum_ledgers(inputs_.photons());
     account.rays += counts.probes;
     account.refused_slots = counts.refused_slots;
     account.deposits = counts.deposits;
     return account;
+}
+
+void PhotonPass::note_met_bodies() {
+    unmet_bodies_ = translucent_bodies_;
+    met_bodies_.upload(std::vector<std::uint32_t>(met_bodies_.size(), 0u));
+}
+
+void PhotonPass::forget_met_bodies() {
+    if (unmet_bodies_.empty()) return;
+    const std::vector<std::uint32_t> met = met_bodies_.download();
+    const auto is_met = [&](int body) { return met[static_cast<std::size_t>(body)] != 0; };
+    unmet_bodies_.erase(std::remove_if(unmet_bodies_.begin(), unmet_bodies_.end(), is_met), unmet_bodies_.end());
 }
 
 Arguments PhotonPass::arguments() const { return on_device_.arguments().add(inputs_.arguments()); }
@@ -86,7 +106,8 @@ void PhotonPass::trace_rays(std::uint32_t count) const {
 
 // Finds what happens to each photon where it landed, and lists them by that.
 ListCounts PhotonPass::classify(const EventRound& round) {
-    classify_.launch(round.count, Arguments("round", round), common_, paths_.list());
+    classify_.launch(round.count, Arguments("round", round), common_, paths_.list(),
+                     Arguments("met_bodies", met_bodies_));
     return paths_.make_lists(round.count);
 }
 

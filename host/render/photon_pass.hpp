@@ -32,6 +32,11 @@ class PhotonPass {
     PhotonAccount trace(const PathSampling& sampling);
     PhotonAccount trace() { return trace(sampling_); }
 
+    // Notes from now on which bodies photons meet, until each translucent one has been met.
+    void note_met_bodies();
+    // Translucent bodies that no photon has met since then, by index.
+    const std::vector<int>& unmet_bodies() const { return unmet_bodies_; }
+
     // The arguments of the scene and of the prepared pass.
     Arguments arguments() const;
 
@@ -48,6 +53,7 @@ class PhotonPass {
     ListCounts classify(const EventRound& round);
     void check_scattered(const ListCounts& lists) const;
     void scatter_at_surfaces(const SubsurfaceEvent& event);
+    void forget_met_bodies();
 
     const DeviceScene& on_device_;
     PassInputs inputs_;
@@ -57,7 +63,9 @@ class PhotonPass {
     SubsurfaceExits exits_;
     std::vector<std::unique_ptr<SubsurfaceTransport>> transports_;  // those that some body uses
     Kernel emit_, emit_stratified_, trace_, settle_, classify_, scatter_;
-    Arguments common_;  // of the scene, the pass and the paths
+    std::vector<int> translucent_bodies_, unmet_bodies_;
+    Buffer<std::uint32_t> met_bodies_;  // [bodies], one at least
+    Arguments common_;                  // of the scene, the pass and the paths
 };
 
 }  // namespace stokes

@@ -5,6 +5,7 @@
 
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
+#include "host/render/emission_seeds.hpp"
 #include "host/render/emission_trial.hpp"
 #include "host/render/local_radii.hpp"
 #include "host/render/radius.hpp"
@@ -27,6 +28,17 @@ constexpr double uniform_share_of_trials = 0.3, uniform_share = 0.15;
 
 // The partition of the lights is no finer than this, nor than so many photons of a pass to a cell.
 constexpr std::uint32_t most_cells = 1024, photons_per_cell = 64;
+
+// Photons of a trial pass, and how many of these there are.
+std::uint32_t trial_photons(std::uint32_t photons) { return std::min(photons, most_trial_photons); }
+std::uint32_t trial_count(std::uint32_t photons) {
+    return std::clamp(all_trial_photons / trial_photons(photons), least_trials, most_trials);
+}
+
+// Cells of a partition for passes of so many photons.
+std::size_t most_cells_of(std::uint32_t photons, std::size_t lights) {
+    return std::clamp(photons / photons_per_cell, 1u, most_cells) + lights;
+}
 
 // Slots a map starts with; it grows with the first passes where that is too few.
 std::uint32_t first_slots(std::uint32_t photons) { return photons + 1024; }
@@ -69,32 +81,40 @@ Renderer::Renderer(const Device& device, const Scene& scene)
 }
 
 // Runs the trial passes. The first radius is that of photons that start at random and are all stored, so that it does
-// not depend on how the scene is sampled. Local radii are factors on this radius, also where the scene gives another;
+// not depend on how the scene is sampled; but where photons are aimed at a body that hardly one of those would find, it
+// is that of photons that find it. Local radii are factors on this radius, also where the scene gives another;
 // they come from photons as the scene samples them.
 void Renderer::set_up_passes() {
     const ResolvedSettings render = resolved(scene_.render);
     const bool local = render.radii == Radii::local;
+    std::vector<EmittingLight> lights = emitting_lights(scene_, on_device_);
+    std::vector<EmissionSample> seeds;
+    if (render.emission == Emission::aimed) seeds = emission_seeds(lights);
     double found_mm = 0.0;
     if (!render.radius_mm || local) {
+        if (!seeds.empty())
+            photon_pass_.inputs().set_emission(EmissionCells::seeded(
+                lights, seeds, uniform_share_of_trials, most_cells_of(photons_, scene_.lights.size()), photons_));
         make_trial_photons(true);
         found_mm = find_first_radius();
     }
     first_radius_mm_ = render.radius_mm.value_or(found_mm);
     if (render.emission == Emission::stratified)
-        photon_pass_.inputs().set_emission(EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
+        photon_pass_.inputs().set_emission(EmissionCells::stratified(lights, photons_));
     if (render.emission == Emission::aimed) {
         try {
-            photon_pass_.inputs().set_emission(aimed_cells());
+            photon_pass_.inputs().set_emission(aimed_cells(lights, seeds));
         } catch (const InputError& error) {  // no memory for the trials
             for (PhotonMap& map : photon_pass_.maps()) map.track_paths(false);
             warn(std::string("photons are spread evenly in place of aimed: ") + error.what());
-            photon_pass_.inputs().set_emission(
-                EmissionCells::stratified(emitting_lights(scene_, on_device_), photons_));
+            photon_pass_.inputs().set_emission(EmissionCells::stratified(lights, photons_));
         }
     }
-    if (!local) return;
-    make_trial_photons(false);
-    gather_.set_radii(find_local_radii(found_mm));
+    if (local) {
+        make_trial_photons(false);
+        gather_.set_radii(find_local_radii(found_mm));
+    }
+    photon_pass_.note_met_bodies();
 }
 
 // Traces the photons of a trial pass. They have the same flux at every wavelength, because a lamp of few wavelengths
@@ -124,23 +144,36 @@ double Renderer::find_first_radius() {
     return radius_mm > 0.0 ? radius_mm : spread_radius_mm(scene_, photons_);
 }
 
+// Where photons go to small bodies and to what the camera sees; none where even trial photons find all bodies. Gives
+// the lights regions about the small bodies.
+std::vector<EmissionSample> Renderer::emission_seeds(std::vector<EmittingLight>& lights) {
+    EmissionSeeds seeds(device_, scene_, on_device_);
+    const double first_half = 0.5 * trial_photons(photons_) * trial_count(photons_);
+    const std::vector<std::vector<SeedPoint>> rare = rare_bodies(scene_, seeds, first_half);
+    if (rare.empty()) return {};
+    for (const std::vector<SeedPoint>& points : rare) seeds.add(points);
+    seeds.set_regions(lights);
+    photon_pass_.prepare(trial_pass, photons_);
+    find_visible_points(view_.camera());
+    seeds.add(visible_points(view_.camera(), gather_.points().download()));
+    return seeds.samples();
+}
+
 // Runs trial passes that leave nothing in the film: what their photons bring to the picture says where more should
 // start. Their wavelengths are drawn by importance, so that few passes suffice for all of the light.
-EmissionCells Renderer::aimed_cells() {
-    const std::vector<EmittingLight> lights = emitting_lights(scene_, on_device_);
+// seeds: where the first half of the photons starts; none: evenly over the lights.
+EmissionCells Renderer::aimed_cells(const std::vector<EmittingLight>& lights,
+                                    const std::vector<EmissionSample>& seeds) {
     const RenderSettings& render = scene_.render;
-    const std::uint32_t photons = std::min(photons_, most_trial_photons);
-    const std::uint32_t trials = std::clamp(all_trial_photons / photons, least_trials, most_trials);
-    const auto cells_of = [&](std::uint32_t n) {
-        return std::clamp(n / photons_per_cell, 1u, most_cells) + lights.size();
-    };
-    const std::size_t trial_cells = cells_of(photons);
+    const std::uint32_t photons = trial_photons(photons_), trials = trial_count(photons_);
+    const std::size_t trial_cells = most_cells_of(photons, lights.size());
     std::optional<StratifiedWavelengths> strata;
     if (render.lambda_max_nm - render.lambda_min_nm + 1 > STOKES_WAVELENGTHS)
         strata.emplace(render.lambda_min_nm, wavelength_importance(scene_));
     EmissionTrial trial(device_, photons);
     EmissionCells cells = EmissionCells::stratified(lights, photons);
     if (cells.records().empty()) return cells;
+    if (!seeds.empty()) cells = EmissionCells::seeded(lights, seeds, uniform_share_of_trials, trial_cells, photons);
     for (PhotonMap& map : photon_pass_.maps()) map.track_paths(true);
     for (std::uint32_t i = 0; i < trials; ++i) {
         if (i == trials / 2)
@@ -153,7 +186,8 @@ EmissionCells Renderer::aimed_cells() {
         trial.add(cells, photon_pass_.arguments(), photon_pass_.maps(), view_.camera(), gather_.points());
     }
     for (PhotonMap& map : photon_pass_.maps()) map.track_paths(false);
-    return EmissionCells::aimed(lights, trial.samples(), uniform_share, cells_of(photons_), photons_);
+    return EmissionCells::aimed(lights, trial.samples(), uniform_share, most_cells_of(photons_, lights.size()),
+                                photons_);
 }
 
 // Counts the photons about the points of this picture, which may be a crop: so a crop has the radii of its part of the

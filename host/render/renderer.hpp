@@ -35,6 +35,8 @@ class Renderer {
 
     std::uint32_t passes() const { return passes_; }
     const LedgerBook& book() const { return book_; }
+    // Translucent bodies that no photon of these passes has met, by index.
+    std::vector<int> unmet_bodies() const { return photon_pass_.unmet_bodies(); }
     std::uint64_t camera_rays() const { return std::uint64_t{passes_} * view_.ray_count(); }
     double first_radius() const { return first_radius_mm_; }  // [mm]
     double radius_of(std::uint32_t pass) const;               // [mm]
@@ -46,7 +48,8 @@ class Renderer {
     void set_up_passes();
     void make_trial_photons(bool as_plain);
     double find_first_radius();
-    EmissionCells aimed_cells();
+    std::vector<EmissionSample> emission_seeds(std::vector<EmittingLight>& lights);
+    EmissionCells aimed_cells(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& seeds);
     std::vector<PixelRadius> find_local_radii(double radius_mm);
     void find_visible_points(const CameraRecord& camera);
     void gather_maps(double radius_mm);

@@ -22,9 +22,15 @@ typedef struct LightRecord {
     float ux, uy, uz;              // beam: half-axis of the cross-section [mm]
     unsigned int dimensions;       // coordinates of a place in its cube, 2 or 4: lib/lights.clh
     float vx, vy, vz;              // beam: the other half-axis [mm]
-    unsigned int inside;           // the body within which it lies, or STOKES_NONE
+    unsigned int restricted;       // 1: photons start only where they can meet something, as the rest says; else 0
+    float tx, ty, tz;     // beam: centre of a window, before what it meets; surface: of a ball around that [mm]
+    float target_mm;      // surface: radius of the ball
+    float wux, wuy, wuz;  // beam: half-axis of the window, which is a rectangle [mm]
+    float part;           // beam: area of the window over that of the section
+    float wvx, wvy, wvz;  // beam: the other half-axis of the window [mm]
+    unsigned int inside;  // the body within which it lies, or STOKES_NONE
 } LightRecord;
-STOKES_ASSERT_SIZE(LightRecord, 80);
+STOKES_ASSERT_SIZE(LightRecord, 128);
 
 // A part of where and whereto a light emits, with a share of the pass's photons: a box in the cube [0, 1]^4 that
 // lib/lights.clh maps onto the light, all of it evenly. Written by the host; they partition the cubes of all lights.
@@ -36,5 +42,12 @@ typedef struct EmissionCell {
     unsigned int pad;
 } EmissionCell;
 STOKES_ASSERT_SIZE(EmissionCell, 48);
+
+// A point of a surface that photons should meet. Written by the host, read by find_emission_places.
+typedef struct EmissionTarget {
+    float x, y, z;     // [mm]
+    float nx, ny, nz;  // normal of its front, unit length
+} EmissionTarget;
+STOKES_ASSERT_SIZE(EmissionTarget, 24);
 
 #endif

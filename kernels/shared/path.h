@@ -132,20 +132,21 @@ STOKES_ASSERT_SIZE(ExitPoint, 68);
 
 // One round of events: passed by value to the photon kernels.
 typedef struct EventRound {
-    unsigned int count;        // work-items
-    unsigned int event;        // index of the round, from 0
-    unsigned int component;    // STOKES_MAP_*: which map is being written
-    unsigned int sampler;      // STOKES_SAMPLER_*
-    unsigned int first_exit;   // first of the component's exits in the exit buffer; those of an event stand together
-    unsigned int first_slot;   // first free slot of the component's map
-    unsigned int slot_limit;   // capacity of the map
-    unsigned int second_exit;  // retrace_elastic: first of the multiple-scattering exits in the exit buffer
-    unsigned int last;         // 1: paths that would go on are cut and counted
-    unsigned int exits;        // exits of an event and component, at least 1
-    unsigned int branches;     // 1: the events are STOKES_EVENT_BRANCHES; classify_photons: they may become that
-    unsigned int drawn_rows;   // PAPER: first entry of the distance densities that r is drawn from; 0: the tables' own
-    unsigned int first_entry;  // of the round's list in the buffer of all lists
-    unsigned int pad[3];
+    unsigned int count;         // work-items
+    unsigned int event;         // index of the round, from 0
+    unsigned int component;     // STOKES_MAP_*: which map is being written
+    unsigned int sampler;       // STOKES_SAMPLER_*
+    unsigned int first_exit;    // first of the component's exits in the exit buffer; those of an event stand together
+    unsigned int first_slot;    // first free slot of the component's map
+    unsigned int slot_limit;    // capacity of the map
+    unsigned int second_exit;   // retrace_elastic: first of the multiple-scattering exits in the exit buffer
+    unsigned int last;          // 1: paths that would go on are cut and counted
+    unsigned int exits;         // exits of an event and component, at least 1
+    unsigned int branches;      // 1: the events are STOKES_EVENT_BRANCHES; classify_photons: they may become that
+    unsigned int drawn_rows;    // PAPER: first entry of the distance densities that r is drawn from; 0: the tables' own
+    unsigned int first_entry;   // of the round's list in the buffer of all lists
+    unsigned int notes_bodies;  // classify_photons: 1: bodies that are met are noted
+    unsigned int pad[2];
 } EventRound;
 STOKES_ASSERT_SIZE(EventRound, 64);
 

@@ -78,7 +78,7 @@ TEST_CASE("the radiance of an emitter is its flux over pi and its area, that of 
     scene.shapes[0].mesh.positions_mm = {{0.0f, 0.0f, 0.0f}, {5.0f, 0.0f, 0.0f}};
     const std::vector<Triangle> square = {{0, 0, 0, 0, 5, 0, 0, 0, 0, 5, 0, 0}, {5, 5, 0, 0, -5, 0, 0, 0, 0, -5, 0, 0}};
     const std::vector<double> p = light_probabilities(scene);
-    const LightTables tables = light_tables(scene, p, square, {0, 2});
+    const LightTables tables = light_tables(scene, p, std::vector<EmissionBounds>(scene.lights.size()), square, {0, 2});
     const PassSpectra pass = make_pass_spectra(scene, p, tables.spread, 3, 100);
     CHECK(tables.spread[2] == Approx(M_PI * 6.0));  // a disk, or an ellipse
     for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {

@@ -132,7 +132,8 @@ Classified classify(const Arrivals& a, std::uint32_t event = 0, std::uint32_t br
                                    .add("spectra", on_device(spectra()))
                                    .add("points", points)
                                    .add("ledgers", ledgers)
-                                   .add("entry_lists", kinds));
+                                   .add("entry_lists", kinds)
+                                   .add("met_bodies", on_device(std::vector<std::uint32_t>(16, 0u))));
     std::vector<std::uint8_t> events = kinds.download();
     std::transform(events.begin(), events.end(), events.begin(), event_of);
     return {events, points.download(), ledgers.download()};

@@ -60,7 +60,7 @@ using namespace stokes;
         F(LightRecord, cumulative_probability) F(LightRecord, px) F(LightRecord, py) F(LightRecord, pz) \
         F(LightRecord, first_area) F(LightRecord, dx) F(LightRecord, dy) F(LightRecord, dz) \
         F(LightRecord, ball_mm) F(LightRecord, ux) F(LightRecord, uy) F(LightRecord, uz) F(LightRecord, dimensions) \
-        F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, inside) \
+        F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, restricted) F(LightRecord, tx) F(LightRecord, ty) F(LightRecord, tz) F(LightRecord, target_mm) F(LightRecord, wux) F(LightRecord, wuy) F(LightRecord, wuz) F(LightRecord, part) F(LightRecord, wvx) F(LightRecord, wvy) F(LightRecord, wvz) F(LightRecord, inside) S(EmissionTarget) F(EmissionTarget, x) F(EmissionTarget, y) F(EmissionTarget, z) F(EmissionTarget, nx) F(EmissionTarget, ny) F(EmissionTarget, nz) \
     S(EmissionCell) F(EmissionCell, low) F(EmissionCell, size) F(EmissionCell, probability) F(EmissionCell, light) \
         F(EmissionCell, stride) F(EmissionCell, pad) \
     S(BodyRecord) F(BodyRecord, flags) F(BodyRecord, material) F(BodyRecord, inside) F(BodyRecord, pad) \
@@ -95,7 +95,7 @@ using namespace stokes;
     S(EventRound) F(EventRound, count) F(EventRound, event) F(EventRound, component) F(EventRound, sampler) \
         F(EventRound, first_exit) F(EventRound, first_slot) F(EventRound, slot_limit) \
         F(EventRound, second_exit) F(EventRound, last) F(EventRound, exits) F(EventRound, branches) \
-        F(EventRound, drawn_rows) F(EventRound, first_entry) F(EventRound, pad) \
+        F(EventRound, drawn_rows) F(EventRound, first_entry) F(EventRound, notes_bodies) F(EventRound, pad) \
     S(ExitGroups) F(ExitGroups, count) F(ExitGroups, component) F(ExitGroups, first_exit) \
         F(ExitGroups, pad) \
     S(ListCounts) F(ListCounts, alive) F(ListCounts, count) F(ListCounts, first) F(ListCounts, pad) \

@@ -101,6 +101,35 @@ TEST_CASE("a block that stands on a floor loses no light through it", "[contacts
         }
 }
 
+// What lies on the block: a label, whose back takes up what leaves below it, or a lamp that shines into it. Three
+// comparisons at 4.5 standard errors.
+TEST_CASE("a label or a lamp that lies on a block is as near as one just above it", "[contacts]") {
+    for (const Transport transport : {Transport::walk, Transport::conserving})
+        for (const bool lamp : {false, true}) {
+            if (lamp && transport == Transport::conserving) continue;  // a block as thin as this is no half-space
+            CAPTURE(word_of(transport), lamp);
+            std::array<Sample, 2> lost;
+            for (std::size_t raised = 0; raised < 2; ++raised) {
+                const Setting& s = settings[1];
+                Scene scene = scene_of(transport, 1.0, 0.01, s);
+                light_from_above(scene, 8.0, s);
+                add_shape(scene, "block", 0, placed(moved(make_box({20.0, 2.0, 20.0}), {0.0, 1.0, 0.0}), s));
+                Mesh sheet = make_rectangle(9.0, 9.0);
+                if (lamp) sheet = turned_over(sheet);
+                add_shape(scene, "sheet", 2, placed(moved(sheet, {0.0, 2.0 + 0.02 * double(raised), 0.0}), s));
+                if (lamp) {
+                    scene.shapes[1].light = 0;
+                    scene.lights = {{"lamp", one, SurfaceLight{1}}};
+                }
+                lost[raised] = share(scene, escaped);
+            }
+            const double error = std::hypot(lost[0].standard_error(), lost[1].standard_error());
+            CHECK(error < 6e-3);
+            CHECK(lost[1].mean() > 0.1);
+            CHECK(std::abs(lost[0].mean() - lost[1].mean()) < 4.5 * error);
+        }
+}
+
 namespace {
 
 // X, Y and Z of the middle half of a picture, the least and the most over the pixels, in all layers.

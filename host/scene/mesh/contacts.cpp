@@ -15,6 +15,9 @@ namespace {
 // Points that stand for a thing when it is asked whether it lies within a body.
 constexpr std::size_t most_points = 64;
 
+// Surfaces within this share of the distance lie in one place: some roundings of a coordinate.
+constexpr double one_place_share = 0.125;
+
 bool has_medium(const Scene& scene, const Shape& shape) {
     return medium_of(scene.materials[static_cast<std::size_t>(shape.material)]).has_value();
 }
@@ -145,7 +148,7 @@ Contacts find_contacts(const Scene& scene, double distance_mm) {
     visit_near_pairs(triangles, 2.0 * distance_mm, [&](const BodyTriangle& a, const BodyTriangle& b) {
         const auto of_a = static_cast<std::size_t>(a.body), of_b = static_cast<std::size_t>(b.body);
         result.touches[of_a] = result.touches[of_b] = true;
-        if (share_a_plane(a, b, distance_mm)) {
+        if (share_a_plane(a, b, one_place_share * distance_mm)) {
             result.contested[a.index] = result.contested[b.index] = true;
             if (medium[of_a] && medium[of_b] && glm::dot(a.normal, b.normal) > 0.0)
                 coincide.insert(ordered(a.body, b.body, medium));
