@@ -68,7 +68,7 @@ void show_line(std::string_view text) {
 }
 
 void end_line() {
-    if (line_is_open.exchange(false)) write_all(STDERR_FILENO, "\n");
+    if (line_is_open.exchange(false)) show_progress("\n");
 }
 
 }  // namespace stokes

@@ -22,7 +22,9 @@ void watch_memory();
 // Takes the signals of a program that dies again: LLVM, in a driver, has put its own handlers in the way by then.
 void renew_memory_watch();
 
-// Ends the program, as above, where there is less memory than the least that PoCL starts with; it would abort.
-void check_memory_for_driver();
+// Where memory is limited, starts the driver in a process of its own, and ends the program as above when that fails: a
+// driver that cannot make its threads, for one, aborts. Also where there is less than PoCL ever starts with.
+// start: whether it finds a device; it throws when the driver fails.
+void check_memory_for_driver(bool (*start)());
 
 }  // namespace stokes

@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::array<int, 4> watched = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
-constexpr auto patience_with_driver = std::chrono::seconds(1), patience_with_set_up = std::chrono::seconds(5);
+constexpr auto patience_with_driver = std::chrono::seconds(1), patience_with_set_up = std::chrono::seconds(3);
 // `timeout` sends its signal to the program and to its group: the second is the same one.
 constexpr auto echo = std::chrono::milliseconds(300);
 
@@ -54,7 +54,8 @@ void end_when_due(Clock::time_point first_at) {
     const Clock::duration since = Clock::now() - first_at;
     if (stake == AtStake::nothing && (since > patience_with_driver || !ForeignCall::on_any_thread())) end_by(caught);
     if (stake != AtStake::set_up || since < patience_with_set_up) return;
-    tell(interrupted_in_set_up);
+    end_line();
+    show_progress(interrupted_in_set_up);  // a pager that nobody pages does not hold it up
     end_by(caught);
 }
 

@@ -45,10 +45,8 @@ DeviceDescription describe(const cl::Platform& platform, const cl::Device& devic
     return result;
 }
 
-std::vector<Found> find_devices() {
-    check_pocl_devices();
-    prepare_pocl_cache();
-    check_memory_for_driver();
+// Empty where there is no driver.
+std::vector<Found> ask_for_devices() {
     std::vector<Found> result;
     try {
         std::vector<cl::Platform> platforms;
@@ -66,10 +64,17 @@ std::vector<Found> find_devices() {
     } catch (const cl::Error& error) {
         if (error.err() != -1001) driver_failed("OpenCL", error);
     }
-    if (result.empty() && memory_is_short()) end_for_lack_of_memory("no OpenCL device was found");
-    if (result.empty())
-        throw RunError("no OpenCL device was found; install a driver, for the CPU the package pocl-opencl-icd");
     return result;
+}
+
+std::vector<Found> find_devices() {
+    check_pocl_devices();
+    prepare_pocl_cache();
+    check_memory_for_driver([] { return !ask_for_devices().empty(); });
+    std::vector<Found> found = ask_for_devices();
+    if (found.empty())
+        throw RunError("no OpenCL device was found; install a driver, for the CPU the package pocl-opencl-icd");
+    return found;
 }
 
 const Found& choose(const std::vector<Found>& found, const std::string& selector) {
