@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/core/log.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/scene/readers/input_files.hpp"
 
@@ -30,21 +31,37 @@ Medium read_medium(const std::string& name, const JsonCursor& place, SpectrumRea
     return medium;
 }
 
+Spectrum read_emission(const ObjectReader& where, SpectrumReader& spectra) {
+    Spectrum emission = spectra.read_relative(where, "emission");
+    if (!(emission.sum_1nm() > 0.0))
+        where.at("emission")
+            .fail(fmt::format("expected some emission from {} to {} nm, got none", first_lambda_nm, last_lambda_nm));
+    return emission;
+}
+
+// A table with another scale is probably relative, and was meant to have its maximum at 1.
+void warn_of_low_excitation(const JsonCursor& where, const Spectrum& excitation) {
+    constexpr double low = 0.1;
+    const double largest = excitation.maximum();
+    if (excitation.value.size() > 1 && largest < low)
+        warn(
+            where.at_place(fmt::format("its largest value is {:.3g}; an excitation is a probability, and has no light "
+                                       "taken up where it is 0, all that meets the fluorophore where it is 1",
+                                       largest)));
+}
+
 Fluorophore read_fluorophore(const std::string& name, const JsonCursor& place, SpectrumReader& spectra) {
     const ObjectReader where(place, "fluorophore");
     Fluorophore fluorophore;
     fluorophore.name = name;
     fluorophore.excitation = spectra.read(where, "excitation", Outside::zero);
-    fluorophore.emission = spectra.read(where, "emission", Outside::zero);
+    warn_of_low_excitation(where.at("excitation"), fluorophore.excitation);
+    fluorophore.emission = read_emission(where, spectra);
     fluorophore.conversion = where.number("conversion_per_nm");
-    const double emission_sum = fluorophore.emission.sum_1nm();
-    if (!(emission_sum > 0.0)) {
-        where.at("emission")
-            .fail(fmt::format("expected some emission from {} to {} nm, got none at any whole nanometre",
-                              first_lambda_nm, last_lambda_nm));
-    }
-    fluorophore.quantum_yield = where.has("quantum_yield") ? where.number("quantum_yield")
-                                                           : std::min(1.0, fluorophore.conversion * emission_sum);
+    if (const auto rule = where.find("stokes_rule")) fluorophore.stokes_rule = rule->word<StokesRule>();
+    fluorophore.quantum_yield = where.has("quantum_yield")
+                                    ? where.number("quantum_yield")
+                                    : std::min(1.0, fluorophore.conversion * fluorophore.emission.sum_1nm());
     return fluorophore;
 }
 
