@@ -43,8 +43,8 @@ TEST_CASE("a lamp of fine lines has the colour of its integral", "[lamp_lines]")
     for (std::size_t c = 0; c < 3; ++c) {
         CAPTURE(c, means[c].mean(), means[c].standard_error());
         CHECK(means[c].standard_error() < 0.01 * expected[c]);
-        // Bins of 1 nm blur what lies at a line by up to 0.5 nm: by less than 0.2 % in its colour.
-        CHECK(std::abs(means[c].mean() - expected[c]) < 4.0 * means[c].standard_error() + 2e-3 * expected[c]);
+        // Bins of 1 nm blur what lies at a line by up to 0.5 nm: by 0.2 % in X.
+        CHECK(std::abs(means[c].mean() - expected[c]) < 4.0 * means[c].standard_error() + 3e-3 * expected[c]);
     }
     const double sum = means[0].mean() + means[1].mean() + means[2].mean();
     CHECK(means[0].mean() / sum == Approx(0.3155).margin(2e-3));
@@ -54,7 +54,7 @@ TEST_CASE("a lamp of fine lines has the colour of its integral", "[lamp_lines]")
     Spectrum radiance = scene.lights[0].flux;
     radiance = radiance.scaled(0.8 * 10.0 / M_PI / radiance.sum_1nm(300, 780));
     const glm::dvec3 exact = xyz_of(radiance);
-    for (int c = 0; c < 3; ++c) CHECK(exact[c] == Approx(expected[c]).epsilon(2e-3));
+    for (int c = 0; c < 3; ++c) CHECK(exact[c] == Approx(expected[c]).epsilon(3e-3));
 }
 
 // Laser lines of 0.02 nm, each of which lies within one nanometre, at their share of the power.
