@@ -90,6 +90,8 @@ Fluorophore fluorophore_of(const MaterialFlags& flags) {
     fluorophore.name = "command line";
     fluorophore.excitation =
         spectrum_of("--excitation", flags.excitation, Outside::zero, 1.0, rules_of(flags)).at_whole_nanometres();
+    if (const std::string doubt = doubt_of_probability(fluorophore.excitation); !doubt.empty())
+        warn("--excitation: " + doubt);
     fluorophore.emission =
         spectrum_of("--emission", flags.emission, Outside::zero, largest_spectrum_value, rules_of(flags))
             .with_maximum_1()

@@ -153,6 +153,17 @@ std::string doubt_of_density(std::optional<WavelengthUnit> unit, const std::opti
         word_of(*unit), word_of(*unit));
 }
 
+std::string doubt_of_probability(const Spectrum& spectrum) {
+    constexpr double low = 0.1;
+    const double largest = spectrum.maximum();
+    if (spectrum.value.size() < 2 || largest >= low) return "";
+    return fmt::format(
+        "the largest value is {:.3g}; an excitation is the share of the light that is taken up, and relative tables "
+        "are "
+        "brought to 1 at their peak",
+        largest);
+}
+
 ColumnSpectrum read_column(const CsvTable& table, const std::string& column, Outside outside,
                            const SampleRules& rules) {
     return ColumnReader(table, column, rules).read(outside);

@@ -41,6 +41,10 @@ struct ColumnSpectrum {
 // doubt.
 std::string doubt_of_density(std::optional<WavelengthUnit> unit, const std::optional<Per>& per);
 
+// Why a spectrum of probabilities is probably a relative one: a table of which no value comes near 1. "" where it is
+// not.
+std::string doubt_of_probability(const Spectrum& spectrum);
+
 // The samples about 300 to 830 nm, wavelengths increasing. Blank cells at the ends of a column are where it has no
 // data, as are the deleted channels of spectral libraries, -1e30 and below. InputError when there is no such column, no
 // wavelength from 300 to 830 nm, no value there, a blank cell between values, or a value that is no number or too far

@@ -139,3 +139,10 @@ TEST_CASE("noise about a dark level becomes zero with a remark, more is refused 
     CHECK(input_error([&] { read_column(table, "a", Outside::zero, refuse); }) ==
           "t.csv:2: a: expected no negative value, got -0.02");
 }
+
+TEST_CASE("a table of probabilities that comes nowhere near 1 is in doubt") {
+    CHECK_THAT(doubt_of_probability({{300, 400}, {0.0, 0.0476}, Outside::zero}),
+               Catch::Matchers::StartsWith("the largest value is 0.0476"));
+    CHECK(doubt_of_probability({{300, 400}, {0.0, 0.1}, Outside::zero}).empty());
+    CHECK(doubt_of_probability(Spectrum::constant(0.01)).empty());
+}

@@ -39,23 +39,13 @@ Spectrum read_emission(const ObjectReader& where, SpectrumReader& spectra) {
     return emission;
 }
 
-// A table with another scale is probably relative, and was meant to have its maximum at 1.
-void warn_of_low_excitation(const JsonCursor& where, const Spectrum& excitation) {
-    constexpr double low = 0.1;
-    const double largest = excitation.maximum();
-    if (excitation.value.size() > 1 && largest < low)
-        warn(
-            where.at_place(fmt::format("its largest value is {:.3g}; an excitation is a probability, and has no light "
-                                       "taken up where it is 0, all that meets the fluorophore where it is 1",
-                                       largest)));
-}
-
 Fluorophore read_fluorophore(const std::string& name, const JsonCursor& place, SpectrumReader& spectra) {
     const ObjectReader where(place, "fluorophore");
     Fluorophore fluorophore;
     fluorophore.name = name;
     fluorophore.excitation = spectra.read(where, "excitation", Outside::zero);
-    warn_of_low_excitation(where.at("excitation"), fluorophore.excitation);
+    if (const std::string doubt = doubt_of_probability(fluorophore.excitation); !doubt.empty())
+        warn(where.at("excitation").at_place(doubt));
     fluorophore.emission = read_emission(where, spectra);
     fluorophore.conversion = where.number("conversion_per_nm");
     if (const auto rule = where.find("stokes_rule")) fluorophore.stokes_rule = rule->word<StokesRule>();
