@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -138,6 +139,8 @@ class TableReader {
             if (cells > 1 && separator_ != ' ') fail_count(row.number, cells, first.size());
             return std::nullopt;
         }
+        if (std::isdigit(static_cast<unsigned char>((*names)[0].text[0])))
+            fail(last.number, fmt::format("expected column names or numbers, got \"{}\"", printable(last.text)));
         const auto unit = unit_in((*names)[0].text);
         if (!unit || lines.size() < 2 || (*names)[0].text.find_first_of(" _") != std::string::npos) return names;
         auto above = split_into(lines[lines.size() - 2].text, count);

@@ -58,6 +58,8 @@ TEST_CASE("Bad CSV is one line with file and line") {
         {"nm,a\n310,1\n300,1\n305,2\n", "t.csv:4: nm: expected wavelengths that decrease as those before, got 305"},
         {"nm,a\n-5,1\n", "t.csv:2: nm: expected a positive wavelength, got -5"},
         {"300,5x\n310,1\n", "t.csv:1: expected a wavelength and at least one more number, got \"300,5x\""},
+        {"300nm,5\n310,1\n", "t.csv:1: expected column names or numbers, got \"300nm,5\""},
+        {"300 nm,5\n310,1\n", "t.csv:1: expected a wavelength and at least one more number, got \"300 nm,5\""},
         {"{\"pairs\": [[300, 1]]}", "t.csv:1: expected a table, got JSON"},
         {"##TITLE=dye\n##XYDATA=(X++(Y..Y))\n400 1 2\n", "t.csv:1: expected a table, got JCAMP-DX"},
         {std::string("nm,a\n300,1\0\n", 12), "t.csv: expected text, got a byte 0"},
