@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "host/commands/number_in.hpp"
-#include "host/core/csv_table.hpp"
+#include "host/core/csv_spectrum.hpp"
 #include "host/core/error.hpp"
+#include "host/core/log.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/core/text_input.hpp"
 #include "host/scene/settings/domain.hpp"
@@ -18,28 +19,43 @@ namespace stokes {
 
 namespace {
 
-const char* const material_flags[] = {"--sigma-s",  "--sigma-a",    "--eta",      "--fresnel",
-                                      "--fraction", "--excitation", "--emission", "--quantum-yield"};
+const char* const material_flags[] = {"--sigma-s",     "--sigma-a",         "--eta",      "--fresnel",
+                                      "--fraction",    "--excitation",      "--emission", "--quantum-yield",
+                                      "--stokes-rule", "--wavelength-unit", "--per",      "--negative"};
 const char* const spectrum_type = "NUMBER|FILE.csv[:COLUMN]";
+
+SampleRules rules_of(const MaterialFlags& flags) {
+    SampleRules rules;
+    rules.unit = value_of_word<WavelengthUnit>(flags.wavelength_unit);
+    rules.per = value_of_word<Per>(flags.per);
+    rules.negative = value_of_word<Negative>(flags.negative);
+    return rules;
+}
 
 // FILE, or FILE:COLUMN where there is no file of the whole name; without a column the first after the
 // wavelengths.
-Spectrum csv_column(const std::string& text, Outside outside) {
+Spectrum csv_column_of(const char* flag, const std::string& text, Outside outside, const SampleRules& rules) {
     std::error_code ignored;
     const std::size_t colon = text.rfind(':');
     const bool named = colon != std::string::npos && !std::filesystem::exists(text, ignored);
     const CsvTable table = read_csv(named ? text.substr(0, colon) : text);
-    return csv_spectrum(table, named ? text.substr(colon + 1) : table.columns[1], outside);
+    ColumnSpectrum read = read_column(table, named ? text.substr(colon + 1) : "2", outside, rules);
+    for (const std::string& remark : read.remarks) warn(fmt::format("{}: {}", flag, remark));
+    if (std::string_view(flag) == "--emission" && !read.density_doubt.empty())
+        warn(fmt::format("{}: {}", flag, read.density_doubt));
+    return std::move(read.spectrum);
 }
 
-Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside, double maximum) {
+// As given, not yet at whole nanometres.
+Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside, double maximum,
+                     const SampleRules& rules) {
     const auto number = parse_double(text);
     Spectrum spectrum;
     if (number) {
         spectrum = Spectrum::constant(*number);
     } else {
         try {
-            spectrum = csv_column(text, outside);
+            spectrum = csv_column_of(flag, text, outside, rules);
         } catch (const InputError& error) {
             throw InputError(fmt::format("{}: {}", flag, error.what()));
         }
@@ -54,8 +70,10 @@ Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside,
 Medium medium_of(const MaterialFlags& flags) {
     Medium medium;
     medium.name = "command line";
-    medium.sigma_s = spectrum_of("--sigma-s", flags.sigma_s, Outside::hold, largest_spectrum_value);
-    medium.sigma_a = spectrum_of("--sigma-a", flags.sigma_a, Outside::hold, largest_spectrum_value);
+    medium.sigma_s = spectrum_of("--sigma-s", flags.sigma_s, Outside::hold, largest_spectrum_value, rules_of(flags))
+                         .at_whole_nanometres();
+    medium.sigma_a = spectrum_of("--sigma-a", flags.sigma_a, Outside::hold, largest_spectrum_value, rules_of(flags))
+                         .at_whole_nanometres();
     medium.eta = flags.eta;
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
@@ -70,12 +88,19 @@ Medium medium_of(const MaterialFlags& flags) {
 Fluorophore fluorophore_of(const MaterialFlags& flags) {
     Fluorophore fluorophore;
     fluorophore.name = "command line";
-    fluorophore.excitation = spectrum_of("--excitation", flags.excitation, Outside::zero, 1.0);
-    fluorophore.emission = spectrum_of("--emission", flags.emission, Outside::zero, 1.0);
-    fluorophore.quantum_yield = flags.quantum_yield;
+    fluorophore.excitation =
+        spectrum_of("--excitation", flags.excitation, Outside::zero, 1.0, rules_of(flags)).at_whole_nanometres();
+    if (const std::string doubt = doubt_of_probability(fluorophore.excitation); !doubt.empty())
+        warn("--excitation: " + doubt);
+    fluorophore.emission =
+        spectrum_of("--emission", flags.emission, Outside::zero, largest_spectrum_value, rules_of(flags))
+            .with_maximum_1()
+            .at_whole_nanometres();
     if (!(fluorophore.emission.sum_1nm() > 0.0))
-        throw InputError(fmt::format("--emission: expected some from {} to {} nm, got none at any whole nanometre",
-                                     first_lambda_nm, last_lambda_nm));
+        throw InputError(
+            fmt::format("--emission: expected some from {} to {} nm, got none", first_lambda_nm, last_lambda_nm));
+    fluorophore.quantum_yield = flags.quantum_yield;
+    fluorophore.stokes_rule = value_of_word<StokesRule>(flags.stokes_rule);
     return fluorophore;
 }
 
@@ -87,6 +112,23 @@ bool together(const CLI::App& command, const std::vector<const char*>& flags) {
     if (given != nullptr && missing != nullptr)
         throw InputError(fmt::format("{}: expected {} as well", given, missing));
     return given != nullptr;
+}
+
+void add_word_flags(CLI::App& command, MaterialFlags& flags) {
+    const auto words = [&](const char* flag, std::string& text, const Words& of, const char* what) {
+        command.add_option(flag, text, what)
+            ->type_name(fmt::format("{}", fmt::join(of, "|")))
+            ->check(CLI::IsMember(of))
+            ->group("Material");
+    };
+    words("--stokes-rule", flags.stokes_rule, words_of<StokesRule>,
+          "What becomes of the emission at and below the exciting wavelength: brought back above it, or cut off");
+    words("--wavelength-unit", flags.wavelength_unit, words_of<WavelengthUnit>,
+          "Unit of the wavelengths of all files; default: as the name of their first column says, or nm");
+    words("--per", flags.per, words_of<Per>, "What an emission is a density over: nm, or the unit of its wavelengths");
+    words(
+        "--negative", flags.negative, words_of<Negative>,
+        "What becomes of values below zero; default: zero with a warning down to -0.02 of the largest, else an error");
 }
 
 }  // namespace
@@ -106,11 +148,12 @@ void add_material_flags(CLI::App& command, MaterialFlags& flags) {
         ->check(number_in(0.0, 1.0))
         ->group("Material");
     spectrum("--excitation", flags.excitation, "Excitation E, 0 to 1");
-    spectrum("--emission", flags.emission, "Emission, relative, 0 to 1");
+    spectrum("--emission", flags.emission, "Emission, relative, of any scale");
     command.add_option("--quantum-yield", flags.quantum_yield, "Photons emitted for each taken up; default 1")
         ->type_name("Q")
         ->check(number_in(0.0, 1.0))
         ->group("Material");
+    add_word_flags(command, flags);
 }
 
 bool has_material_flags(const CLI::App& command) {
@@ -127,8 +170,10 @@ ProbeMaterial material_of(const CLI::App& command, const MaterialFlags& flags) {
     material.fresnel = flags.fresnel;
     if (together(command, {"--fraction", "--excitation", "--emission"})) {
         material.dyes = {{fluorophore_of(flags), flags.fraction}};
-    } else if (command.count("--quantum-yield")) {
-        throw InputError("--quantum-yield: expected --fraction, --excitation and --emission as well");
+    } else {
+        for (const char* flag : {"--quantum-yield", "--stokes-rule"})
+            if (command.count(flag))
+                throw InputError(fmt::format("{}: expected --fraction, --excitation and --emission as well", flag));
     }
     return material;
 }

@@ -11,6 +11,8 @@ namespace stokes {
 struct MaterialFlags {
     std::string sigma_s, sigma_a;      // a number or FILE.csv[:COLUMN] [1/mm]
     std::string excitation, emission;  // FILE.csv[:COLUMN] or a number
+    std::string stokes_rule;
+    std::string wavelength_unit, per, negative;  // of all files
     double eta = 1.0, fraction = 0.0, quantum_yield = 1.0;
     bool fresnel = false;
 };

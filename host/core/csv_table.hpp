@@ -1,29 +1,41 @@
-// Tables of numbers over wavelength: `#` header lines, one line of column names, rows of numbers.
+// Tables of numbers over wavelength, as this project and others write them: comments, text before the table, a line of
+// column names or none, rows of numbers.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "host/core/spectrum.hpp"
+#include "host/core/wavelength_unit.hpp"
 
 namespace stokes {
 
 struct CsvTable {
     std::string file;                         // for messages
-    std::vector<std::string> columns;         // names; the first column is the wavelength [nm]
-    std::vector<std::vector<double>> values;  // [column][row]
+    std::vector<std::string> columns;         // names, "" where a column has none; the first is the wavelength
+    std::vector<std::vector<double>> values;  // [column][row]; no number: nan
     std::vector<std::int64_t> lines;          // [row], line in the file
+    std::optional<WavelengthUnit> unit;       // of the first column, where its name or the line below the names says it
+    bool named = true;                        // false: the file has no line of names, and its columns are "1", "2", ..
+    // [{column, row}]: what stands there in the place of a number, unless it is nothing.
+    std::map<std::pair<std::size_t, std::size_t>, std::string> texts;
 };
 
-// Throws InputError "FILE:LINE: ..." unless there are at least two columns with different names and one row,
-// every row has as many finite numbers as there are columns, and wavelengths are positive and strictly
-// increase.
+// Comments are lines that start with #, %, ! or //. The first row decides what separates cells: tabs, semicolons,
+// commas, bars or blanks; where commas do not, they are decimal ones. The line before the first row, or the last
+// comment before it, has the names if it has as many cells; what else stands before it is skipped, unless it starts
+// with a number. A line of units may stand below the names. InputError "FILE:LINE: ..." unless there are two columns at
+// least, every row has as many cells as the first, and wavelengths are positive and increase, or decrease, throughout.
 CsvTable parse_csv(std::string_view text, const std::string& file);
 CsvTable read_csv(const std::string& path);
 
-// One column as a spectrum. Throws InputError when there is no such column or a value is negative.
-Spectrum csv_spectrum(const CsvTable& table, const std::string& column, Outside outside);
+// The place of a column: by name, or by number, "2" for the one after the wavelength, where no column has that name.
+// InputError when there is no such column, or several.
+std::size_t csv_column(const CsvTable& table, const std::string& name);
 
 }  // namespace stokes

@@ -52,10 +52,14 @@ std::string NumberRange::text() const {
     return fmt::format("in {}{:g}, {:g}{}", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
 }
 
-void JsonCursor::fail_at(int line, const std::string& what) const {
+std::string JsonCursor::at_line(int line, const std::string& what) const {
     const std::string place = file_->empty() ? "" : fmt::format("{}:{}: ", *file_, line);
-    throw InputError(fmt::format("{}{}{}{}", place, path_, path_.empty() ? "" : ": ", what));
+    return fmt::format("{}{}{}{}", place, path_, path_.empty() ? "" : ": ", what);
 }
+
+std::string JsonCursor::at_place(const std::string& what) const { return at_line(value_->line, what); }
+
+void JsonCursor::fail_at(int line, const std::string& what) const { throw InputError(at_line(line, what)); }
 
 void JsonCursor::fail(const std::string& what) const { fail_at(value_->line, what); }
 

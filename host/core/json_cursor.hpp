@@ -48,6 +48,8 @@ class JsonCursor {
     bool is(JsonValue::Type type) const { return value_->type == type; }
 
     [[noreturn]] void fail(const std::string& what) const;
+    // The same words for a warning: "FILE:LINE: KEY.PATH: WHAT".
+    std::string at_place(const std::string& what) const;
     // what: "a number in [0, 1]"; the text adds what is there instead.
     [[noreturn]] void fail_expected(const std::string& what) const;
     // The text here is no name in this part of the scene ("media"), which has these names.
@@ -94,6 +96,7 @@ class JsonCursor {
   private:
     std::string got() const;
     JsonCursor member(std::size_t index) const;
+    std::string at_line(int line, const std::string& what) const;
     [[noreturn]] void fail_at(int line, const std::string& what) const;
 
     const JsonValue* value_;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "host/core/csv_table.hpp"
+#include "host/core/csv_spectrum.hpp"
 #include "host/core/embedded.hpp"
 #include "host/core/error.hpp"
 

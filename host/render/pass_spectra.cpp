@@ -7,6 +7,7 @@
 #include "host/core/error.hpp"
 #include "host/core/overloaded.hpp"
 #include "host/image/colour.hpp"
+#include "host/render/stokes_shift.hpp"
 #include "host/render/stratified_wavelengths.hpp"
 #include "host/render/transport/transport_model.hpp"
 
@@ -132,12 +133,13 @@ std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluor
                                                         const PassWavelengths& wavelengths) {
     const WavelengthSet& set = wavelengths.set;
     std::array<Flux16, STOKES_WAVELENGTHS> rows{};
-    const double sum = fluorophore.emission.sum_1nm();
+    const StokesFactor stokes(fluorophore.emission, stokes_rule_of(fluorophore, transport));
     const TransportModel& model = transport_model(transport);
     for (std::size_t ex = 0; ex < set.size(); ++ex)
         for (std::size_t em = 0; em < set.size(); ++em) {
             if (set[em] <= set[ex]) continue;
-            const double emitted = model.reradiated_per_nm(fluorophore, sum, set[ex], set[em]);
+            const double emitted =
+                stokes(set[ex]) * model.reradiated_per_nm(fluorophore, stokes.sum(), set[ex], set[em]);
             rows[ex].v[em] =
                 static_cast<float>(emitted * fluorophore.excitation.at(set[ex]) * wavelengths.weight_nm(ex, em));
         }

@@ -50,7 +50,7 @@ PassSpectra make_pass_spectra(const Scene& scene, const std::vector<double>& pro
 std::vector<double> dye_weights(const std::vector<Dye>& dyes);
 
 // Re-radiation matrix at a wavelength set: [ex][em], 0 unless em > ex (Stokes). Flux at ex [W/nm] times it is flux at
-// em [W/nm]: E(ex) TransportModel::reradiated_per_nm() pair weight.
+// em [W/nm]: E(ex) TransportModel::reradiated_per_nm() StokesFactor pair weight.
 std::array<Flux16, STOKES_WAVELENGTHS> reradiation_rows(const Fluorophore& fluorophore, Transport transport,
                                                         const PassWavelengths& wavelengths);
 // The same where all pairs weigh alike.

@@ -8,6 +8,7 @@
 #include "host/core/error.hpp"
 #include "host/render/device_scene.hpp"
 #include "host/render/photon_pass.hpp"
+#include "host/render/probe_grid.hpp"
 #include "host/render/probe_scene.hpp"
 #include "host/render/probe_sets.hpp"
 #include "host/render/transport/transport_model.hpp"
@@ -85,17 +86,16 @@ struct HalfSpaceProbe::Bench {
           on_device(on, scene),
           batches(std::max(least_batches, (s.photons + most_photons_per_batch - 1) / most_photons_per_batch)),
           photons(static_cast<std::uint32_t>((s.photons + batches - 1) / batches)),
-          pass(on, scene, on_device, photons, photons) {
+          pass(on, scene, on_device, photons, photons),
+          grids(material, settings) {
         on_device.bodies.upload({BodyRecord{STOKES_BODY_FLAT, 0, STOKES_NONE, 0}});
         // Far below the mean free paths, so that it matters nowhere.
         on_device.offset_mm = static_cast<float>(1e-3 * mean_free_paths(material).shortest_mm);
-        for (int lambda = s.lambda_min_nm; lambda <= s.lambda_max_nm; lambda += s.step_nm) grid_nm.push_back(lambda);
     }
 
-    ProbeGrid probe_grid(int lambda_ex_nm) const;
     std::vector<double> bin_edges(const ProbeGrid& grid) const;
-    void add_set(const ProbeSet& set, const ProbeResult& result, const Layout& layout, std::size_t sets,
-                 std::vector<double>& sums) const;
+    void add_set(const ProbeSet& set, int set_step_nm, const ProbeResult& result, const Layout& layout,
+                 std::size_t sets, std::vector<double>& sums) const;
 
     Device device;
     ProbeMaterial material;
@@ -105,39 +105,8 @@ struct HalfSpaceProbe::Bench {
     std::int64_t batches;
     std::uint32_t photons;  // a batch and set
     PhotonPass pass;
-    std::vector<int> grid_nm;
+    ProbeGrids grids;
 };
-
-ProbeGrid HalfSpaceProbe::Bench::probe_grid(int lambda_ex_nm) const {
-    ProbeGrid grid;
-    grid.lambda_ex_nm = lambda_ex_nm;
-    grid.step_nm = settings.step_nm;
-    grid.lambda_nm = grid_nm;
-    const auto place = std::lower_bound(grid.lambda_nm.begin(), grid.lambda_nm.end(), lambda_ex_nm);
-    if (place == grid.lambda_nm.end() || *place != lambda_ex_nm) grid.lambda_nm.insert(place, lambda_ex_nm);
-
-    // Light that one dye emits may be taken up by another.
-    const auto some_dye = [&](const auto& has) {
-        return std::any_of(material.dyes.begin(), material.dyes.end(),
-                           [&](const ProbeDye& dye) { return dye.fraction > 0.0 && has(dye.fluorophore); });
-    };
-    const auto emits = [&](int lambda) {
-        return lambda > lambda_ex_nm && some_dye([&](const Fluorophore& dye) { return dye.emission.at(lambda) > 0.0; });
-    };
-    const bool fluoresces = some_dye([&](const Fluorophore& dye) { return dye.excitation.at(lambda_ex_nm) > 0.0; });
-    if (fluoresces) std::copy_if(grid_nm.begin(), grid_nm.end(), std::back_inserter(grid.emitting), emits);
-
-    const bool again = fluoresces && transport_model(settings.transport).takes_up_again(settings.first_collision_only);
-    for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
-        const bool inert = !again || !emits(lambda) || grid.emitting.empty() || lambda > grid.emitting.back();
-        if (lambda != lambda_ex_nm && inert && !std::binary_search(grid.emitting.begin(), grid.emitting.end(), lambda))
-            grid.spare.push_back(lambda);
-    }
-    // The nearest have the most similar mean free paths, which keeps weights near one.
-    std::stable_sort(grid.spare.begin(), grid.spare.end(),
-                     [&](int a, int b) { return std::abs(a - lambda_ex_nm) < std::abs(b - lambda_ex_nm); });
-    return grid;
-}
 
 // From a hundredth of a mean free path to twenty diffusion lengths, but no more than 1000 mean free paths.
 std::vector<double> HalfSpaceProbe::Bench::bin_edges(const ProbeGrid& grid) const {
@@ -146,8 +115,9 @@ std::vector<double> HalfSpaceProbe::Bench::bin_edges(const ProbeGrid& grid) cons
         const auto sigma_t = [&](int lambda) {
             return material.medium->sigma_s.at(lambda) + material.medium->sigma_a.at(lambda);
         };
-        std::vector<int> leaving_nm = grid.emitting;
-        leaving_nm.push_back(grid.lambda_ex_nm);
+        std::vector<int> leaving_nm{grid.lambda_ex_nm};
+        for (const ProbeStep& step : grid.emitting)
+            leaving_nm.insert(leaving_nm.end(), step.lambda_nm.begin(), step.lambda_nm.end());
         first = 0.01 / sigma_t(grid.lambda_ex_nm);
         last = 0.0;
         for (const int lambda : leaving_nm) {
@@ -164,10 +134,10 @@ std::vector<double> HalfSpaceProbe::Bench::bin_edges(const ProbeGrid& grid) cons
     return edges;
 }
 
-// Adds what the maps hold to a batch's sums. Elastic light is in every one of the sets, of which it is the
-// mean.
-void HalfSpaceProbe::Bench::add_set(const ProbeSet& set, const ProbeResult& result, const Layout& layout,
-                                    std::size_t sets, std::vector<double>& sums) const {
+// Adds what the maps hold to a batch's sums. set_step_nm: ProbeGrid::step_nm. Elastic light is in every one of the
+// sets, of which it is the mean.
+void HalfSpaceProbe::Bench::add_set(const ProbeSet& set, int set_step_nm, const ProbeResult& result,
+                                    const Layout& layout, std::size_t sets, std::vector<double>& sums) const {
     constexpr std::array<std::size_t, 3> component_of = {probe_fluorescence, probe_single, probe_multiple};
     const auto ex = static_cast<std::size_t>(
         std::lower_bound(result.lambda_nm.begin(), result.lambda_nm.end(), result.lambda_ex_nm) -
@@ -182,9 +152,10 @@ void HalfSpaceProbe::Bench::add_set(const ProbeSet& set, const ProbeResult& resu
             if (component == probe_fluorescence) {
                 for (std::size_t k = 0; k < STOKES_WAVELENGTHS; ++k) {
                     if (set.read[k] < 0) continue;
-                    const double per_nm = static_cast<double>(flux[i].v[k]) / set.wavelengths.pair_weight_nm;
-                    const double part = per_nm * settings.step_nm;
-                    sums[layout.at_wavelength(component, static_cast<std::size_t>(set.read[k]))] += per_nm;
+                    const double part =
+                        static_cast<double>(flux[i].v[k]) / set.wavelengths.pair_weight_nm * set_step_nm;
+                    sums[layout.at_wavelength(component, static_cast<std::size_t>(set.read[k]))] +=
+                        part / settings.step_nm;
                     sums[layout.emitted_photons()] +=
                         part * set.wavelengths.set[k] / static_cast<double>(result.lambda_ex_nm);
                     leaving += part;
@@ -208,7 +179,7 @@ HalfSpaceProbe::HalfSpaceProbe(const Device& device, const ProbeMaterial& materi
 
 HalfSpaceProbe::~HalfSpaceProbe() = default;
 
-const std::vector<int>& HalfSpaceProbe::grid_nm() const { return bench_->grid_nm; }
+const std::vector<int>& HalfSpaceProbe::grid_nm() const { return bench_->grids.read_nm(); }
 
 namespace {
 
@@ -217,8 +188,9 @@ void finish_batch(const Layout& layout, std::size_t wavelengths, std::size_t bin
                   std::vector<double>& sums) {
     sums[layout.at_wavelength(probe_specular, ex)] = sums[layout.total(probe_specular)] = reflected;
     for (std::size_t component = 0; component < probe_total; ++component) {
-        for (std::size_t i = 0; i < wavelengths; ++i)
-            sums[layout.at_wavelength(probe_total, i)] += sums[layout.at_wavelength(component, i)];
+        for (std::size_t i = 0; i < wavelengths; ++i)  // shares at the excitation, values per nm elsewhere
+            if (component != probe_fluorescence || i != ex)
+                sums[layout.at_wavelength(probe_total, i)] += sums[layout.at_wavelength(component, i)];
         for (std::size_t bin = 0; bin <= bins; ++bin)
             sums[layout.in_bin(probe_total, bin)] += sums[layout.in_bin(component, bin)];
         sums[layout.total(probe_total)] += sums[layout.total(component)];
@@ -250,7 +222,7 @@ ProbeResult HalfSpaceProbe::measure(int lambda_ex_nm) {
         throw InputError(fmt::format("probe: expected an excitation wavelength in [{}, {}] nm, got {}", first_lambda_nm,
                                      last_lambda_nm, lambda_ex_nm));
     b.scene.lights[0].flux = line_of(lambda_ex_nm);
-    const ProbeGrid grid = b.probe_grid(lambda_ex_nm);
+    const ProbeGrid grid = b.grids.at(lambda_ex_nm);
     ProbeResult result;
     result.lambda_ex_nm = lambda_ex_nm;
     result.lambda_nm = grid.lambda_nm;
@@ -276,7 +248,7 @@ ProbeResult HalfSpaceProbe::measure(int lambda_ex_nm) {
             reflections += static_cast<double>(account.reflections);
             arrived += account.energy[0];
             dropped += account.energy[4];
-            b.add_set(set, result, layout, sets.size(), sums);
+            b.add_set(set, grid.step_nm, result, layout, sets.size(), sums);
         }
         finish_batch(layout, grid.lambda_nm.size(), bins, ex,
                      reflections / (static_cast<double>(sets.size()) * b.photons), sums);

@@ -59,7 +59,8 @@ struct ProbeResult {
     int lambda_ex_nm = 0;
     // lambda_min_nm + n step_nm up to lambda_max_nm, and lambda_ex_nm, increasing.
     std::vector<int> lambda_nm;
-    // [component][lambda]: at lambda_ex_nm the share that leaves; fluorescence above it, per nm [1/nm].
+    // [component][lambda]: at lambda_ex_nm the share that leaves. Fluorescence per nm [1/nm]: what leaves at the whole
+    // nanometres above lambda_ex_nm that are nearest to lambda, over step_nm; in the total but at lambda_ex_nm.
     std::array<std::vector<Measured>, probe_component_count> reflectance;
     // Shares of the energy; fluorescence: step_nm times the sum over lambda_nm.
     std::array<Measured, probe_component_count> totals;

@@ -7,6 +7,7 @@
 
 #include "host/core/overloaded.hpp"
 #include "host/image/colour.hpp"
+#include "host/render/stokes_shift.hpp"
 
 namespace stokes {
 
@@ -28,6 +29,7 @@ class Range {
         for (const Spectrum* matching : {&observer.x, &observer.y, &observer.z}) eye_.push_back(of(*matching));
     }
     std::size_t size() const { return size_; }
+    int first_nm() const { return first_nm_; }
     const std::vector<Values>& eye() const { return eye_; }
     Values of(const Spectrum& spectrum) const {
         Values result(size_);
@@ -64,6 +66,17 @@ Values below_emission(Values excitation, const Values& emission) {
     return excitation;
 }
 
+// What a fluorophore emits above where it takes light up, in proportion; the whole emission where no light is taken up.
+Values emitted_by(const Values& taken_up, const Values& emission, const StokesFactor& stokes, int first_nm) {
+    Values emitted(emission.size());
+    double so_far = 0.0;  // taken up below, by what it counts
+    for (std::size_t i = 0; i < emission.size(); ++i) {
+        emitted[i] = emission[i] * so_far;
+        so_far += taken_up[i] * stokes(first_nm + static_cast<int>(i));
+    }
+    return total(emitted) > 0.0 ? emitted : emission;
+}
+
 Values squares_of(const Scene& scene, const Range& range) {
     std::vector<Values> lamps, reflectances{Values(range.size(), 1.0)};
     for (const Light& light : scene.lights)
@@ -88,8 +101,12 @@ Values squares_of(const Scene& scene, const Range& range) {
         const Fluorophore& fluorophore = scene.fluorophores[static_cast<std::size_t>(index)];
         const Values emission = range.of(fluorophore.emission);
         const Values excitation = below_emission(range.of(fluorophore.excitation), emission);
-        for (const Values& lamp : lamps) add_square(squares, product(lamp, excitation), excitation_share * lamp_share);
-        add_observed_squares(squares, range, emission, 1.0);
+        const StokesFactor stokes(fluorophore.emission, stokes_rule_of(fluorophore, scene.render.transport));
+        for (const Values& lamp : lamps) {
+            const Values taken_up = product(lamp, excitation);
+            add_square(squares, taken_up, excitation_share * lamp_share);
+            add_observed_squares(squares, range, emitted_by(taken_up, emission, stokes, range.first_nm()), lamp_share);
+        }
     }
     return squares;
 }

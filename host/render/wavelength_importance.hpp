@@ -13,8 +13,8 @@ namespace stokes {
 // tenth of them uniform, so that none is missed. The rest follows the root of a sum of squares, over
 // what the picture is made of, each brought to a sum of 1 over wavelengths:
 //   lamp x reflectance x eye, mean over lamps and materials; for each fluorophore that a material has, lamp x
-//   excitation, mean over lamps, three times; and emission x eye. eye: the colour matching functions X, Y, Z,
-//   each by itself.
+//   excitation, mean over lamps, three times; and what it emits of that, by Stokes' law, x eye, mean over lamps. eye:
+//   the colour matching functions X, Y, Z, each by itself.
 // For shares of a variance f_k^2/m of several sums add up, and the root of their sum of squares makes it
 // least.
 std::vector<double> wavelength_importance(const Scene& scene);

@@ -37,10 +37,10 @@ double image_weight_nm(int first_nm, int last_nm) { return double(last_nm - firs
 
 double pair_weight_nm(int first_nm, int last_nm) { return double(last_nm - first_nm) / (STOKES_WAVELENGTHS - 1); }
 
-// Light at a stratified wavelength has its rarity already: of the pair's weight, 1/(m m joint_ratio), the emitted one's
-// share is left.
+// Light at a wavelength has the rarity of that one already: of the pair's weight, 1/(m m joint_ratio) where they are
+// stratified, the emitted one's share is left.
 double PassWavelengths::weight_nm(std::size_t ex, std::size_t em) const {
-    return stratified ? pair_weight_nm * rarity[em] / pair_ratio(strata[ex], strata[em]) : pair_weight_nm;
+    return pair_weight_nm * rarity[em] / (stratified ? pair_ratio(strata[ex], strata[em]) : 1.0);
 }
 
 }  // namespace stokes

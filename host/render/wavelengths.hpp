@@ -33,10 +33,11 @@ struct PassWavelengths {
     // Factor on it for light that has been re-radiated k times before; [0] is 1. Void for those drawn in strata.
     std::array<double, STOKES_WAVELENGTHS> chain;
 
-    // Drawn in strata (stratified_wavelengths.hpp): how many times as rare as in a uniform draw each one is, a
-    // factor on all light that starts at it; and its stratum, never decreasing.
-    bool stratified = false;
+    // How many times as rare as in a uniform draw each one is, a factor on all light that starts at it.
     std::array<double, STOKES_WAVELENGTHS> rarity = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+
+    // Drawn in strata (stratified_wavelengths.hpp): each one's stratum, never decreasing.
+    bool stratified = false;
     std::array<std::uint32_t, STOKES_WAVELENGTHS> strata{};
 
     // Weight [nm] of light that is taken up at set[ex] and emitted at set[em], the first time.

@@ -48,12 +48,20 @@ struct Medium {
     double dipole_eta = 1.0;  // refractive index in the dipole's A; 1 where the Fresnel factor is taken as 1
 };
 
+// What becomes of an emission of which Stokes' law cuts off what lies at the exciting wavelength and below: what is
+// left is brought back to the whole, so that the yield is the same at every exciting wavelength (Vavilov's law), or it
+// is not.
+enum class StokesRule { keep_yield, truncate };
+template <>
+inline const Words words_of<StokesRule> = {"keep_yield", "truncate"};
+
 struct Fluorophore {
     std::string name;
-    Spectrum excitation;         // relative
-    Spectrum emission;           // relative
+    Spectrum excitation;         // probability, in [0, 1]
+    Spectrum emission;           // relative, of any scale for a quantum yield; of a table whose maximum is 1 for paper
     double conversion = 2.0e-2;  // paper: eta of eq. 1 [1/nm]
     double quantum_yield = 1.0;  // conserving, walk: photons emitted for each taken up, in [0, 1]
+    std::optional<StokesRule> stokes_rule;  // none: as the transport has it
 };
 
 struct BlackMaterial {};

@@ -1,6 +1,6 @@
 #include <filesystem>
 
-#include "host/core/csv_table.hpp"
+#include "host/core/csv_spectrum.hpp"
 #include "host/core/text_input.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/input_error.hpp"
@@ -27,6 +27,7 @@ TEST_CASE("A CSV column becomes a spectrum") {
     CHECK(csv_spectrum(table, "a", Outside::zero).at(500) == 0.0);
     CHECK(input_error([&] { csv_spectrum(table, "b", Outside::zero); }) ==
           "t.csv:3: b: expected no negative value, got -4");
+    CHECK(csv_spectrum(table, "2", Outside::hold).value == a.value);
     CHECK(input_error([&] { csv_spectrum(table, "c", Outside::zero); }) ==
           "t.csv: no column \"c\"; expected one of: a, b");
     CHECK(input_error([&] { csv_spectrum(table, "nm", Outside::zero); }) ==
@@ -42,20 +43,28 @@ TEST_CASE("Bad CSV is one line with file and line") {
         {"", "t.csv:1: expected a line of column names and rows of numbers"},
         {"# only a header\n", "t.csv:2: expected a line of column names"},
         {"nm,a\n", "t.csv:2: expected a line of column names and rows"},
-        {"nm\n300\n", "t.csv:1: expected a wavelength column and at least one more"},
-        {"nm,a,a\n", "t.csv:1: column \"a\" named twice"},
-        {"nm,,a\n", "t.csv:1: expected column names, got an empty one"},
+        {"nm\n300\n", "t.csv:2: expected a wavelength and at least one more number, got \"300\""},
         {"nm,a\n300,1\n400\n", "t.csv:3: expected 2 fields, got 1"},
-        {"nm,a\n300,1,2\n", "t.csv:2: expected 2 fields, got 3"},
-        {"nm,a\n300,white\n", "t.csv:2: a: expected a finite number, got \"white\""},
-        {"nm,a\n300,1 2\n", "t.csv:2: a: expected a finite number, got \"1 2\""},
-        {"nm,a\n300,\n", "t.csv:2: a: expected a finite number, got \"\""},
-        {"nm,a\n300,nan\n", "t.csv:2: a: expected a finite number, got \"nan\""},
-        {"nm,a\n300,inf\n", "t.csv:2: a: expected a finite number, got \"inf\""},
-        {"nm,a\n300,1e999\n", "t.csv:2: a: expected a finite number"},
-        {"nm,a\n300,1\n300,2\n", "t.csv:3: nm: expected positive wavelengths that increase, got 300 after 300"},
-        {"nm,a\n300,1\n# late\n", "t.csv:3: expected 2 fields, got 1"},
-        {"nm,a\n-5,1\n", "t.csv:2: nm: expected positive wavelengths that increase, got -5"},
+        {"nm,a\n300,1,2\n", "t.csv:2: expected 2 fields, got 3; if its commas are decimal ones"},
+        {"nm,a,b\n300,1\n", "t.csv:2: expected 3 fields, got 2"},
+        {"nm,a\n300,0,5\n", "t.csv:2: expected 2 fields, got 3; if its commas are decimal ones"},
+        {"nm,a\n300,white\n", "t.csv:2: expected a wavelength and at least one more number, got \"300,white\""},
+        {"nm,a\n300,1 2\n", "t.csv:2: expected cells between commas or between blanks, got \"300,1 2\""},
+        {"nm,a\n300,inf\n", "t.csv:2: expected a wavelength and at least one more number"},
+        {"nm,a\n300,1e999\n", "t.csv:2: expected a wavelength and at least one more number"},
+        {"nm,a\n300,1\nlate,1\n", "t.csv:3: nm: expected a finite number, got \"late\""},
+        {"nm,a\n300,1\n300,2\n", "t.csv:3: nm: 300 given twice"},
+        {"nm,a\n300,1\n310,1\n305,2\n", "t.csv:4: nm: expected wavelengths that increase as those before, got 305"},
+        {"nm,a\n310,1\n300,1\n305,2\n", "t.csv:4: nm: expected wavelengths that decrease as those before, got 305"},
+        {"nm,a\n-5,1\n", "t.csv:2: nm: expected a positive wavelength, got -5"},
+        {"300,5x\n310,1\n", "t.csv:1: expected a wavelength and at least one more number, got \"300,5x\""},
+        {"300nm,5\n310,1\n", "t.csv:1: expected column names or numbers, got \"300nm,5\""},
+        {"300 nm,5\n310,1\n", "t.csv:1: expected a wavelength and at least one more number, got \"300 nm,5\""},
+        {"{\"pairs\": [[300, 1]]}", "t.csv:1: expected a table, got JSON"},
+        {"##TITLE=dye\n##XYDATA=(X++(Y..Y))\n400 1 2\n", "t.csv:1: expected a table, got JCAMP-DX"},
+        {std::string("nm,a\n300,1\0\n", 12), "t.csv: expected text, got a byte 0"},
+        {"nm;a\n300.5;0,5\n", "t.csv:2: expected either decimal points or decimal commas, got \"0,5\" and \"300.5\""},
+        {"nm\ta\n300\t1,234\n310\t12,345\n", "t.csv:2: expected numbers without commas, got \"1,234\""},
     };
     for (const Case& c : cases) {
         INFO(c.text);

@@ -152,10 +152,17 @@ TEST_CASE("the rows of several fluorophores are sums of each one's by its share"
 TEST_CASE("conserving re-radiation emits the quantum yield in photons", "[pass_spectra]") {
     Fluorophore dye = spectral_scene().fluorophores.front();
     dye.quantum_yield = 0.7;
-    const double sum = dye.emission.sum_1nm(300, 830);
-    for (const int ex : {330, 400, 470}) {
-        double expected = 0.0;
-        for (int em = ex + 1; em <= 780; ++em) expected += 0.7 * dye.excitation.at(ex) * dye.emission.at(em) / sum;
+    const auto [ex, rule] = GENERATE(table<int, std::optional<StokesRule>>({{330, std::nullopt},
+                                                                            {400, StokesRule::keep_yield},
+                                                                            {470, std::nullopt},
+                                                                            {400, StokesRule::truncate},
+                                                                            {470, StokesRule::truncate}}));
+    dye.stokes_rule = rule;
+    {
+        // Of all that is emitted, what lies above the excitation, or all of it; of that, what lies within the render.
+        const bool keep = rule != StokesRule::truncate;
+        const double whole = dye.emission.sum_1nm(keep ? ex + 1 : 300, 830);
+        const double expected = 0.7 * dye.excitation.at(ex) * dye.emission.sum_1nm(ex + 1, 780) / whole;
         Sample photons;
         for (std::uint32_t pass = 0; pass < 200000 && photons.count() < 4000; ++pass) {
             const WavelengthSet set = draw_wavelengths(8, pass, 300, 780);

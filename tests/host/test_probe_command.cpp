@@ -149,7 +149,9 @@ TEST_CASE("probe writes the effective re-radiation matrix", "[probe_command]") {
         for (std::size_t em = 0; em < 12; ++em) {
             const double lambda_em = 340.0 + 20.0 * static_cast<double>(em);
             CAPTURE(lambda_ex, lambda_em);
-            const bool emits = lambda_em > lambda_ex && lambda_em > 400.0 && lambda_em < 520.0;
+            // At the nanometres from -9 to +10 about lambda_em, between 400 and 520 nm and above lambda_ex.
+            const bool emits =
+                lambda_em + 10.0 > std::max(lambda_ex, 400.0) && lambda_em - 9.0 < 520.0 && lambda_ex < 520.0;
             CHECK((matrix.values[2 + em][ex] > 0.0) == emits);
         }
     }
@@ -172,11 +174,36 @@ TEST_CASE("probe gives the same bits whatever the number of threads", "[probe_co
     }
 }
 
+// A table without a line of names, or with that line behind #, loses no row, and a table in um is that in nm.
+TEST_CASE("probe reads tables of any dialect alike", "[probe_command]") {
+    const TemporaryFolder folder;
+    put_file(folder.file("names.csv"), "wavelength_nm,sigma_s\n300,5\n400,1\n800,1\n");
+    put_file(folder.file("none.csv"), "300,5\n400,1\n800,1\n");
+    put_file(folder.file("hash.csv"), "# wavelength_nm,sigma_s\n300,5\n400,1\n800,1\n");
+    put_file(folder.file("commas.csv"), "nm;sigma_s\n300,0;5,0\n400,0;1,0\n800,0;1,0\n");
+    put_file(folder.file("um.csv"), "w,sigma_s\n0.3,5\n0.4,1\n0.8,1\n");
+    std::string first;
+    for (const std::string file :
+         {"names.csv", "none.csv", "none.csv:2", "hash.csv:sigma_s", "commas.csv", "um.csv --wavelength-unit um"}) {
+        CAPTURE(file);
+        const std::string json = folder.file("q.json");
+        const Outcome run = run_stokes("probe --sigma-a 0.1 --lambda 320 --quiet --sigma-s " + folder.file(file) + few +
+                                       "--json " + json);
+        CAPTURE(run.err);
+        REQUIRE(run.code == 0);
+        if (first.empty()) first = file_content(json);
+        CHECK(file_content(json) == first);
+        CHECK(run.err == "");
+    }
+}
+
 TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
     const TemporaryFolder folder;
     const DyeFiles dye(folder);
     const std::string medium = "--sigma-s 1 --sigma-a 0 ";
     put_file(folder.file("bad.csv"), "wavelength_nm,a\n300,1\n400,-2\n");
+    put_file(folder.file("um.csv"), "w,a\n0.3,5\n0.4,1\n0.8,1\n");
+    put_file(folder.file("noise.csv"), "wavelength_nm,a\n300,-0.01\n400,1\n");
     put_file(folder.file("high.csv"), "wavelength_nm,a\n300,1\n400,1.5\n");
     put_file(folder.file("dark.csv"), "wavelength_nm,a\n300,0\n400,0\n");
     struct {
@@ -199,6 +226,12 @@ TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
         {"--sigma-s 1 --sigma-a " + folder.file("e.csv") + ":x", "e.csv: no column \"x\"; expected one of: E"},
         {medium + "--eta 0.9", "--eta: expected a number, 1 to 4"},
         {medium + "--fraction 0.5", "--fraction: expected --emission as well"},
+        {medium + "--stokes-rule truncate", "--stokes-rule: expected --fraction, --excitation and --emission as well"},
+        {medium + "--wavelength-unit mm", "--wavelength-unit"},
+        {"--sigma-s 1 --sigma-a " + folder.file("um.csv"),
+         "um.csv: expected wavelengths from 300 to 830 nm, got 0.3 to 0.8 nm; if they are in um"},
+        {"--sigma-s 1 --sigma-a " + folder.file("noise.csv") + " --negative refuse",
+         "noise.csv:2: a: expected no negative value, got -0.01"},
         {medium + "--quantum-yield 0.5", "--quantum-yield: expected --fraction, --excitation and --emission as well"},
         {medium + dye.flags + "--quantum-yield 1.1", "--quantum-yield: expected a number, 0 to 1"},
         {medium + "--fraction 1 --excitation " + folder.file("high.csv") + " --emission 1",

@@ -178,13 +178,59 @@ TEST_CASE("A quantum yield is given, or follows from the conversion and the emis
     CHECK(yield(sums_to_10, ", \"conversion_per_nm\": 0.5") == 1.0);
     CHECK(yield(sums_to_10, ", \"conversion_per_nm\": 0.5, \"quantum_yield\": 0.25") == 0.25);
     CHECK(yield(sums_to_10, ", \"quantum_yield\": 0") == 0.0);
-    // Light from 300 to 830 nm counts.
-    CHECK(yield("[[820, 0], [830, 1], [840, 0]]", "") == Approx(0.02 * 5.5));
+    // Light from 300 to 830 nm counts, the nanometre about 830 included: 5 below 830, and half a nanometre of 0.975.
+    CHECK(yield("[[820, 0], [830, 1], [840, 0]]", "") == Approx(0.02 * (5 + 0.5 * 0.975)).epsilon(2e-3));
     // PHYSICS section 4: the paper's conversion of 0.02 amounts to about 0.6.
     for (const Fluorophore& dots : read_scene(source_path("scenes/prisms.json")).fluorophores) {
         INFO(dots.name);
         CHECK(dots.quantum_yield == Approx(0.65).margin(0.15));
     }
+}
+
+TEST_CASE("An emission has no scale") {
+    const auto with_emission = [](const std::string& pairs) {
+        return scene_with(R"("emission": {"pairs": [[500, 1]]})", R"("emission": {"pairs": )" + pairs + "}")
+            .fluorophores[0];
+    };
+    const Fluorophore one = with_emission("[[500, 0], [510, 1], [520, 0]]");
+    for (const char* pairs : {"[[500, 0], [510, 0.0476], [520, 0]]", "[[500, 0], [510, 40000], [520, 0]]"}) {
+        const Fluorophore other = with_emission(pairs);
+        CHECK(other.quantum_yield == Approx(one.quantum_yield));
+        for (const int lambda : {499, 505, 510, 516})
+            CHECK(other.emission.at(lambda) == Approx(one.emission.at(lambda)));
+    }
+}
+
+TEST_CASE("Spectra of any role are means over whole nanometres, in the unit that the scene says") {
+    const TemporaryFolder folder;
+    // A line of area 1 nm between 505 and 506 nm on nothing, in micrometres.
+    put_file(folder.file("line.csv"), "w,v\n0.3,0\n0.5054,0\n0.5055,10\n0.5056,0\n0.83,0\n");
+    const std::string line = R"({"file": "line.csv", "column": "v", "unit": "um", "scale": 0.1})";
+    const Scene scene = parse_scene(
+        R"({"format": "stokes-scene", "version": 1, "camera": {"position_mm": [0, 9, 9], "target_mm": [0, 0, 0]},
+            "spectra": {"line": )" +
+            line + R"(},
+            "media": {"m": {"sigma_s_per_mm": "line", "sigma_a_per_mm": {"pairs": [[2, 1], [3, 3]], "unit": "eV"}}},
+            "fluorophores": {"f": {"excitation": "line", "emission": "line", "stokes_rule": "truncate"}},
+            "materials": {"d": {"type": "diffuse", "reflectance": "line"}},
+            "lights": [{"type": "disk", "radius_mm": 1, "center_mm": [0, 9, 0], "normal": [0, -1, 0],
+                        "spectrum": "line", "power_W": 3}]})",
+        folder.file("s.json"));
+    // Half of the line lies on either side of 505.5 nm.
+    const Fluorophore& f = scene.fluorophores[0];
+    CHECK(f.stokes_rule == StokesRule::truncate);
+    for (const Spectrum* spectrum :
+         {&scene.media[0].sigma_s, &f.excitation, &as_diffuse(scene.materials[0])->reflectance}) {
+        CHECK(spectrum->at(505) == Approx(0.05));
+        CHECK(spectrum->at(506) == Approx(0.05));
+        CHECK(spectrum->at(507) == Approx(0.0).margin(1e-9));
+    }
+    CHECK(f.emission.at(505) == Approx(f.emission.at(506)));
+    CHECK(scene.lights[0].flux.at(506) == Approx(1.5));
+    // 2 and 3 eV are 619.92 and 413.28 nm: half between them, not at 2.5 eV.
+    CHECK(scene.media[0].sigma_a.at(700) == 1.0);
+    CHECK(scene.media[0].sigma_a.at(400) == 3.0);
+    CHECK(scene.media[0].sigma_a.at(516) == Approx(3.0 - 2.0 * (516 - 413.28066) / (619.92099 - 413.28066)));
 }
 
 TEST_CASE("What a scene leaves out has its default") {
@@ -241,7 +287,7 @@ TEST_CASE("Transforms apply in order, and mirroring keeps the outside out") {
 TEST_CASE("The flux of an emitter sums to its power, or to pi area radiance") {
     const Scene power = parse_scene(base, "s.json");
     CHECK(power.lights[0].flux.sum_1nm(300, 780) == Approx(5.0));
-    CHECK(power.lights[0].flux.at(350) == Approx(power.lights[0].flux.at(400) / 2));
+    CHECK(power.lights[0].flux.at(325) == Approx(power.lights[0].flux.at(375) / 3));
 
     const Scene radiance = scene_with("\"power_W\": 5", "\"radiance_W_m2_sr\": 7");
     const double area_m2 = mesh_area_mm2(radiance.shapes[1].mesh) * 1e-6;
@@ -249,7 +295,7 @@ TEST_CASE("The flux of an emitter sums to its power, or to pi area radiance") {
     CHECK(radiance.lights[0].flux.sum_1nm(300, 780) == Approx(M_PI * area_m2 * 7));
 
     const Scene absolute = scene_with("\"power_W\": 5", "\"radiance_scale_W_m2_sr_nm\": 3");
-    CHECK(absolute.lights[0].flux.at(400) == Approx(M_PI * area_m2 * 3 * 2));
+    CHECK(absolute.lights[0].flux.at(350) == Approx(M_PI * area_m2 * 3 * 1));
 
     const Scene narrow = scene_with("\"seed\": 9", "\"seed\": 9, \"lambda_min_nm\": 380, \"lambda_max_nm\": 399");
     CHECK(narrow.lights[0].flux.sum_1nm(380, 399) == Approx(5.0));
@@ -315,14 +361,14 @@ TEST_CASE("Spectra come from files, illuminants, pairs and constants, with the e
     CHECK(reflectance(R"({"file": "t.csv", "column": "a", "outside": "zero"})").at(700) == 0.0);
     CHECK(reflectance(R"({"file": "../)" + folder.path().substr(folder.path().rfind('/') + 1) +
                       R"(/t.csv", "column": "a"})")
-              .at(400) == 0.25);
+              .at(399) == 0.25);
 
     const Scene lit = scene_with("\"spectrum\": \"lamp\"", R"("spectrum": {"illuminant": "D65"})");
     // CIE D65 at 450 and 560 nm: 117.008 and 100.
     CHECK(lit.lights[0].flux.at(450) / lit.lights[0].flux.at(560) == Approx(1.17008).epsilon(1e-5));
     CHECK(lit.lights[0].flux.at(831) == 0.0);
     const Scene held = scene_with(R"([[300, 0], [400, 2]]})", R"([[300, 0], [400, 2]], "outside": "hold"})");
-    CHECK(held.lights[0].flux.at(700) == held.lights[0].flux.at(400));
+    CHECK(held.lights[0].flux.at(700) == held.lights[0].flux.at(401));
 }
 
 TEST_CASE("Surface fluorescence needs no medium") {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/core/csv_table.hpp"
+#include "host/core/csv_spectrum.hpp"
 #include "host/image/colour.hpp"
 #include "host/render/pass_spectra.hpp"
 #include "host/render/wavelength_importance.hpp"

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <complex>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/render/probe.hpp"
@@ -32,8 +34,7 @@ ProbeMaterial medium_of(double sigma_t, double albedo, double eta = 1.0) {
     return material;
 }
 
-// Emits between 400 and 520 nm, takes up below; straight lines between points of the grid, which sums
-// integrate exactly.
+// Emits between 400 and 520 nm, takes up below.
 Fluorophore dye() {
     Fluorophore fluorophore;
     fluorophore.name = "dye";
@@ -41,6 +42,14 @@ Fluorophore dye() {
     fluorophore.emission = {{400.0, 450.0, 520.0}, {0.0, 1.0, 0.0}, Outside::zero};
     fluorophore.quantum_yield = 0.9;
     return fluorophore;
+}
+
+// The sum over the whole nanometres that a wavelength of a grid in steps of 5 nm stands for.
+template <class Value>
+double sum_over_step(int lambda_nm, const Value& value) {
+    double sum = 0.0;
+    for (int lambda = lambda_nm - 2; lambda <= lambda_nm + 2; ++lambda) sum += value(lambda);
+    return sum;
 }
 
 ProbeResult measured(const ProbeMaterial& material, const ProbeSettings& settings, int lambda_ex_nm = 365) {
@@ -131,8 +140,10 @@ void check_fluorescence(Transport transport, const std::vector<Case>& cases, dou
         double energy = 0.0;
         for (std::size_t i = 0; i < result.lambda_nm.size(); ++i) {
             const int lambda = result.lambda_nm[i];
-            const double expected = photons * dot.emission.at(lambda) / emission * 365.0 / lambda;
-            energy += 5.0 * expected;
+            const double in_step =
+                sum_over_step(lambda, [&](int at) { return photons * dot.emission.at(at) / emission * 365.0 / at; });
+            const double expected = in_step / 5.0;
+            energy += in_step;
             const Measured& m = result.reflectance[probe_fluorescence][i];
             CAPTURE(lambda, m.value, m.standard_error, expected);
             CHECK(std::abs(m.value - expected) <= (errors + 1.0) * m.standard_error);
@@ -301,46 +312,110 @@ TEST_CASE("the series over collisions gives Chandrasekhar's reflectance", "[prob
 // Where the extinction is the same at all wavelengths, the way does not depend on the colour: after n
 // collisions the light at all wavelengths is M^n times what arrived, M scattering on its diagonal and
 // re-radiation below it. So what leaves is the sum of p_n M^n, p_n as above, with re-absorption at every
-// collision. 24 emitting wavelengths share two sets, so that light which is re-radiated again comes from
-// wavelengths that are in the set by chance.
+// collision. The 119 emitting nanometres share eight sets, so that light which is re-radiated again comes from
+// wavelengths that are in the set by chance. Read in steps of 5 nm it is the same light.
 TEST_CASE("light that is taken up again and again is weighted right", "[probe]") {
+    const auto rule = GENERATE(StokesRule::keep_yield, StokesRule::truncate);
     ProbeMaterial material = medium_of(1.0, 0.7);
     material.dyes = {{dye(), 0.7}};
-    ProbeSettings settings = settings_of(Transport::walk, 0.0, 500000);
+    material.dyes[0].fluorophore.stokes_rule = rule;
+    ProbeSettings settings = settings_of(Transport::walk, 0.0, 125000);
     settings.first_collision_only = false;
     const ProbeResult result = measured(material, settings);
-    CHECK(result.sets == 2);
+    CHECK(result.sets == 8);
 
     const Fluorophore& dot = material.dyes[0].fluorophore;
-    const std::size_t count = result.lambda_nm.size();
-    const double emission = dot.emission.sum_1nm(300, 830);
-    const auto uptake = [&](std::size_t i) { return 0.7 * dot.excitation.at(result.lambda_nm[i]); };
-    std::vector<double> light(count, 0.0), leaving(count, 0.0);
-    const auto ex = static_cast<std::size_t>(std::find(result.lambda_nm.begin(), result.lambda_nm.end(), 365) -
-                                             result.lambda_nm.begin());
-    light[ex] = 1.0;
+    constexpr int first_nm = 365, last_nm = 530;
+    constexpr std::size_t count = last_nm - first_nm + 1;
+    const auto nm = [](std::size_t i) { return first_nm + static_cast<int>(i); };
+    const auto uptake = [&](std::size_t i) { return 0.7 * dot.excitation.at(nm(i)); };
+    std::vector<double> light(count, 0.0), leaving(count, 0.0), whole(count);
+    for (std::size_t i = 0; i < count; ++i)
+        whole[i] = dot.emission.sum_1nm(rule == StokesRule::keep_yield ? nm(i) + 1 : 300, 830);
+    light[0] = 1.0;
     for (const double escape : escape_by_collisions(1.0, 300)) {
         std::vector<double> next(count, 0.0);
         for (std::size_t to = 0; to < count; ++to) {
             next[to] = light[to] * (1.0 - uptake(to)) * 0.7;
             for (std::size_t from = 0; from < to; ++from)
-                next[to] += light[from] * uptake(from) * dot.quantum_yield * 5.0 *
-                            dot.emission.at(result.lambda_nm[to]) / emission * result.lambda_nm[from] /
-                            result.lambda_nm[to];
+                if (whole[from] > 0.0)
+                    next[to] += light[from] * uptake(from) * dot.quantum_yield * dot.emission.at(nm(to)) / whole[from] *
+                                nm(from) / nm(to);
         }
         light = next;
         for (std::size_t i = 0; i < count; ++i) leaving[i] += escape * light[i];
     }
     check_near(result.totals[probe_total], std::accumulate(leaving.begin(), leaving.end(), 0.0));
-    double fluorescence = 0.0;
-    for (std::size_t i = ex + 1; i < count; ++i) {
-        fluorescence += leaving[i];
+    check_near(result.totals[probe_fluorescence], std::accumulate(leaving.begin() + 1, leaving.end(), 0.0));
+    for (std::size_t i = 0; i < result.lambda_nm.size(); ++i) {
+        if (result.lambda_nm[i] <= first_nm + 5 || result.lambda_nm[i] > last_nm - 5) continue;
+        const double expected = sum_over_step(
+            result.lambda_nm[i], [&](int at) { return leaving[static_cast<std::size_t>(at - first_nm)] / 5.0; });
         const Measured& m = result.reflectance[probe_fluorescence][i];
-        CAPTURE(result.lambda_nm[i], m.value, m.standard_error, leaving[i] / 5.0);
-        CHECK(std::abs(5.0 * m.value - leaving[i]) <= 4.0 * 5.0 * m.standard_error);
-        CHECK(5.0 * m.standard_error <= 0.03 * leaving[i]);
+        CAPTURE(result.lambda_nm[i], m.value, m.standard_error, expected);
+        CHECK(std::abs(m.value - expected) <= 4.0 * m.standard_error);
+        CHECK(m.standard_error <= 0.04 * expected);
     }
-    check_near(result.totals[probe_fluorescence], fluorescence);
+}
+
+namespace {
+
+// Takes up everything and scatters nothing. Of what is emitted at the depth t, exp(-t) of the beam, the half that goes
+// up escapes with exp(-t/mu): the integral of mu/(1 + mu) over mu, halved, is (1 - ln 2)/2.
+ProbeMaterial ink(const Spectrum& emission) {
+    ProbeMaterial material = medium_of(1.0, 0.0);
+    Fluorophore fluorophore;
+    fluorophore.name = "ink";
+    fluorophore.excitation = Spectrum::constant(1.0);
+    fluorophore.emission = emission.at_whole_nanometres();
+    fluorophore.quantum_yield = 0.9;
+    material.dyes = {{fluorophore, 1.0}};
+    return material;
+}
+
+const double ink_escape = 0.5 * (1.0 - std::log(2.0));
+
+}  // namespace
+
+// Lines of 3 nm, as those of europium: most of what they emit lies between the wavelengths that are read.
+TEST_CASE("what the probe reads does not depend on its step", "[probe]") {
+    const ProbeMaterial material = ink({{590.5, 592, 593.5, 610.9, 612.4, 613.9}, {0, 0.3, 0, 0, 1, 0}, Outside::zero});
+    for (const int step : {50, 7, 5, 2, 1}) {
+        CAPTURE(step);
+        ProbeSettings settings = settings_of(Transport::conserving, 0.0, 100000);
+        settings.step_nm = step;
+        const ProbeResult result = measured(material, settings, 400);
+        check_near(result.emitted_photons, 0.9 * ink_escape);
+        double sum = 0.0;
+        for (const Measured& m : result.reflectance[probe_fluorescence]) sum += step * m.value;
+        CHECK(sum == Approx(result.totals[probe_fluorescence].value));
+    }
+}
+
+// Excited within its own band, a dye emits what is left of it above: all of its yield, or the share that is left.
+TEST_CASE("a dye that is excited in its own band keeps its yield", "[probe]") {
+    const Spectrum band{{539, 540, 560, 561}, {0, 1, 1, 0}, Outside::zero};
+    const auto emitted = [&](Transport transport, int lambda_ex_nm, std::optional<StokesRule> rule) {
+        ProbeMaterial material = ink(band);
+        material.dyes[0].fluorophore.stokes_rule = rule;
+        ProbeSettings settings = settings_of(transport, 0.0, 100000);
+        settings.step_nm = 1;
+        return measured(material, settings, lambda_ex_nm).emitted_photons;
+    };
+    const double all = 0.9 * ink_escape;
+    for (const int lambda_ex : {400, 545, 550, 555}) {
+        CAPTURE(lambda_ex);
+        check_near(emitted(Transport::conserving, lambda_ex, std::nullopt), all);
+        // Whole nanometres from 541 to 559 have 1, the others add up to the area of the trapezium, 21.
+        const double left = lambda_ex == 400 ? 1.0 : (559.0 - lambda_ex + (21.0 - 19.0) / 2.0) / 21.0;
+        check_near(emitted(Transport::conserving, lambda_ex, StokesRule::truncate), all * left);
+    }
+    CHECK(emitted(Transport::conserving, 561, std::nullopt).value == 0.0);
+    for (const auto& [rule, share] : {std::pair{StokesRule::keep_yield, 1.0}, {StokesRule::truncate, 10.0 / 21.0}}) {
+        const Measured walked = emitted(Transport::walk, 550, rule);
+        CHECK(walked.standard_error < 2e-3);
+        CHECK(std::abs(walked.value - all * share) < 3.0 * walked.standard_error);
+    }
 }
 
 // Without subsurface light c E QY of the photons leave where they came in, no noise but that of the draw of
@@ -386,8 +461,10 @@ TEST_CASE("two fluorophores emit the sum of what each of them does", "[probe]") 
         for (std::size_t i = 0; i < result.lambda_nm.size(); ++i) {
             double expected = 0.0;
             for (const ProbeDye& of : material.dyes)
-                expected += photons(of) * of.fluorophore.emission.at(result.lambda_nm[i]) /
-                            of.fluorophore.emission.sum_1nm(300, 830) * 365.0 / result.lambda_nm[i];
+                expected += sum_over_step(result.lambda_nm[i], [&](int at) {
+                    return photons(of) * of.fluorophore.emission.at(at) / of.fluorophore.emission.sum_1nm(300, 830) *
+                           365.0 / at / 5.0;
+                });
             const Measured& m = result.reflectance[probe_fluorescence][i];
             CAPTURE(result.lambda_nm[i], m.value, m.standard_error, expected);
             CHECK(std::abs(m.value - expected) <= 4.0 * m.standard_error);

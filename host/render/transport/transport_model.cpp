@@ -19,6 +19,7 @@ class PaperModel : public TransportModel {
     std::uint32_t code() const override { return STOKES_TRANSPORT_PAPER; }
     bool has_fresnel() const override { return false; }
     std::uint32_t table_of(std::uint32_t medium, bool) const override { return medium; }
+    StokesRule stokes_rule() const override { return StokesRule::truncate; }
     // Eq. 1-2 of the paper.
     double reradiated_per_nm(const Fluorophore& dye, double, int, int em_nm) const override {
         return dye.conversion * dye.emission.at(em_nm);

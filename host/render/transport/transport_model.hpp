@@ -26,9 +26,12 @@ class TransportModel {
     // Place of a medium's tables among those of the model, by index of Scene::media.
     virtual std::uint32_t table_of(std::uint32_t medium, bool fresnel) const = 0;
 
+    // What becomes of the emission that Stokes' law cuts off, of fluorophores that do not say it.
+    virtual StokesRule stokes_rule() const { return StokesRule::keep_yield; }
+
     // Light that a fluorophore emits at em_nm per light that it takes up at ex_nm [1/nm], by energy: Q f(em) ex/em, f
-    // the emission as photons per nm of unit integral (PHYSICS section 4). emission_sum: of the emission at whole
-    // nanometres.
+    // the emission as photons per nm of unit integral (PHYSICS section 4), without Stokes' law. emission_sum: of the
+    // emission at whole nanometres.
     virtual double reradiated_per_nm(const Fluorophore& dye, double emission_sum, int ex_nm, int em_nm) const {
         return dye.quantum_yield * dye.emission.at(em_nm) / emission_sum * ex_nm / em_nm;
     }

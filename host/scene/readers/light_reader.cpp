@@ -47,8 +47,7 @@ Spectrum with_total(const JsonCursor& light, const Spectrum& spectrum, double to
     if (!(sum > 0.0) || !std::isfinite(factor)) {
         light.at("spectrum")
             .fail(fmt::format("expected some light from {} to {} nm, got {}", render.lambda_min_nm,
-                              render.lambda_max_nm,
-                              sum > 0.0 ? fmt::format("a sum of only {:g}", sum) : "none at any whole nanometre"));
+                              render.lambda_max_nm, sum > 0.0 ? fmt::format("a sum of only {:g}", sum) : "none"));
     }
     return spectrum.scaled(factor);
 }
@@ -95,7 +94,7 @@ Light read_beam(const ObjectReader& where, SpectrumReader& spectra, const Render
         where.fail_unread();
     }
     const double power_w = where.number("irradiance_W_m2") * area_mm2 * m2_per_mm2;
-    light.flux = with_total(where, spectra.read(where, "spectrum", Outside::zero), power_w, render);
+    light.flux = with_total(where, spectra.read_density(where, "spectrum"), power_w, render);
     return light;
 }
 
@@ -157,7 +156,7 @@ void read_emitter_spectra(const JsonCursor& lights, SpectrumReader& spectra, Sce
         const auto* emitter = std::get_if<SurfaceLight>(&scene.lights[i].kind);
         if (emitter == nullptr) continue;
         const ObjectReader where(places[i], "light");
-        const Spectrum spectrum = spectra.read(where, "spectrum", Outside::zero);
+        const Spectrum spectrum = spectra.read_density(where, "spectrum");
         const double area_mm2 = mesh_area_mm2(scene.shapes[static_cast<std::size_t>(emitter->shape)].mesh);
         scene.lights[i].flux = emitter_flux(where, spectrum, area_mm2, scene.render);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/core/log.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/scene/readers/input_files.hpp"
 
@@ -30,21 +31,27 @@ Medium read_medium(const std::string& name, const JsonCursor& place, SpectrumRea
     return medium;
 }
 
+Spectrum read_emission(const ObjectReader& where, SpectrumReader& spectra) {
+    Spectrum emission = spectra.read_relative(where, "emission");
+    if (!(emission.sum_1nm() > 0.0))
+        where.at("emission")
+            .fail(fmt::format("expected some emission from {} to {} nm, got none", first_lambda_nm, last_lambda_nm));
+    return emission;
+}
+
 Fluorophore read_fluorophore(const std::string& name, const JsonCursor& place, SpectrumReader& spectra) {
     const ObjectReader where(place, "fluorophore");
     Fluorophore fluorophore;
     fluorophore.name = name;
     fluorophore.excitation = spectra.read(where, "excitation", Outside::zero);
-    fluorophore.emission = spectra.read(where, "emission", Outside::zero);
+    if (const std::string doubt = doubt_of_probability(fluorophore.excitation); !doubt.empty())
+        warn(where.at("excitation").at_place(doubt));
+    fluorophore.emission = read_emission(where, spectra);
     fluorophore.conversion = where.number("conversion_per_nm");
-    const double emission_sum = fluorophore.emission.sum_1nm();
-    if (!(emission_sum > 0.0)) {
-        where.at("emission")
-            .fail(fmt::format("expected some emission from {} to {} nm, got none at any whole nanometre",
-                              first_lambda_nm, last_lambda_nm));
-    }
-    fluorophore.quantum_yield = where.has("quantum_yield") ? where.number("quantum_yield")
-                                                           : std::min(1.0, fluorophore.conversion * emission_sum);
+    if (const auto rule = where.find("stokes_rule")) fluorophore.stokes_rule = rule->word<StokesRule>();
+    fluorophore.quantum_yield = where.has("quantum_yield")
+                                    ? where.number("quantum_yield")
+                                    : std::min(1.0, fluorophore.conversion * fluorophore.emission.sum_1nm());
     return fluorophore;
 }
 

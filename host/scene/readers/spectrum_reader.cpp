@@ -6,6 +6,7 @@
 
 #include "host/core/embedded.hpp"
 #include "host/core/error.hpp"
+#include "host/core/log.hpp"
 #include "host/core/text_input.hpp"
 
 namespace stokes {
@@ -27,28 +28,35 @@ Spectrum read_illuminant(const std::string& name) {
     return csv_spectrum(parse_csv(found->second, file), name, Outside::zero);
 }
 
-Spectrum read_pairs(const JsonCursor& pairs) {
-    Spectrum result;
-    for (const JsonCursor& pair : pairs.items()) {
-        const auto both = pair.items();
-        if (both.size() != 2) pair.fail_expected("[wavelength in nm, value]");
-        const double lambda_nm = both[0].number(wavelength_range);
-        if (!result.lambda_nm.empty() && lambda_nm <= result.lambda_nm.back()) {
-            both[0].fail(
-                fmt::format("expected wavelengths that increase, got {} after {}", lambda_nm, result.lambda_nm.back()));
-        }
-        result.lambda_nm.push_back(lambda_nm);
-        result.value.push_back(both[1].number(value_range));
-    }
-    if (result.value.empty()) pairs.fail("expected at least one [wavelength in nm, value]");
-    return result;
+// Of a file's samples or of pairs.
+SampleRules read_rules(const ObjectReader& where) {
+    SampleRules rules;
+    if (const auto unit = where.find("unit")) rules.unit = unit->word<WavelengthUnit>();
+    if (const auto per = where.find("per")) rules.per = per->word<Per>();
+    if (const auto negative = where.find("negative")) rules.negative = negative->word<Negative>();
+    return rules;
 }
 
-void check_maximum(const JsonCursor& where, const Spectrum& spectrum, double maximum) {
+void check_order(const JsonCursor& pair, const std::vector<double>& x) {
+    const std::size_t n = x.size();
+    if (n < 2) return;
+    const bool increase = x[1] > x[0];
+    if (x[n - 1] == x[n - 2] || (x[n - 1] > x[n - 2]) != increase)
+        pair.fail(fmt::format("expected wavelengths that {}, got {} after {}",
+                              n == 2 || increase ? "increase" : "decrease", x[n - 1], x[n - 2]));
+}
+
+void check_maximum(const JsonCursor& where, const Spectrum& spectrum, double maximum, bool file) {
     for (std::size_t i = 0; i < spectrum.value.size(); ++i) {
         if (spectrum.value[i] <= maximum) continue;
-        where.fail(fmt::format("expected values in [0, {:g}], got {} at {} nm", maximum, spectrum.value[i],
-                               spectrum.lambda_nm[i]));
+        const double largest = spectrum.maximum();
+        std::string hint;
+        if (file && maximum == 1.0)
+            hint = largest > 1.5 && largest <= 100.0
+                       ? "; percentages have \"scale\": 0.01"
+                       : fmt::format("; \"scale\": {:.4g} brings the largest to 1", 0.99999 / largest);
+        where.fail(fmt::format("expected values in [0, {:g}], got {} at {} nm{}", maximum, spectrum.value[i],
+                               spectrum.lambda_nm[i], hint));
     }
 }
 
@@ -62,50 +70,111 @@ Spectrum SpectrumReader::read(const ObjectReader& object, const char* key, Outsi
     return read(object.at(key), outside, object.maximum(key));
 }
 
+SpectrumReader::Definition SpectrumReader::density_at(const ObjectReader& object, const char* key) {
+    const JsonCursor where = object.at(key);
+    Definition definition = definition_at(where, object.maximum(key));
+    if (!definition.density_doubt.empty()) warn(where.at_place(definition.density_doubt));
+    return definition;
+}
+
+Spectrum SpectrumReader::read_density(const ObjectReader& object, const char* key) {
+    return spectrum_of(object.at(key), density_at(object, key), Outside::zero, object.maximum(key));
+}
+
+Spectrum SpectrumReader::read_relative(const ObjectReader& object, const char* key) {
+    Definition definition = density_at(object, key);
+    definition.spectrum = definition.spectrum.with_maximum_1();
+    return spectrum_of(object.at(key), std::move(definition), Outside::zero, object.maximum(key));
+}
+
 Spectrum SpectrumReader::read(const JsonCursor& where, Outside outside, double maximum) {
-    if (where.is(JsonValue::Type::number)) {
-        return Spectrum::constant(where.number({0.0, maximum}));
-    }
-    Definition definition;
-    if (where.is(JsonValue::Type::string)) {
-        const auto found = named_.find(where.text());
-        if (found == named_.end()) {
-            std::vector<std::string> names;
-            for (const auto& entry : named_) names.push_back(entry.first);
-            where.fail_undefined("spectra", names);
-        }
-        definition = found->second;
-    } else if (where.is(JsonValue::Type::object)) {
-        definition = read_object(where);
-    } else {
+    Definition definition = definition_at(where, maximum);
+    if (!definition.range_fault.empty()) where.fail(definition.range_fault);
+    return spectrum_of(where, std::move(definition), outside, maximum);
+}
+
+SpectrumReader::Definition SpectrumReader::definition_at(const JsonCursor& where, double maximum) {
+    if (where.is(JsonValue::Type::number)) return {Spectrum::constant(where.number({0.0, maximum})), Outside::hold};
+    if (where.is(JsonValue::Type::object)) return read_object(where);
+    if (!where.is(JsonValue::Type::string))
         where.fail_expected("a spectrum (a number, a name in spectra, or an object)");
-    }
-    check_maximum(where, definition.spectrum, maximum);
+    const auto found = named_.find(where.text());
+    if (found != named_.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& entry : named_) names.push_back(entry.first);
+    where.fail_undefined("spectra", names);
+}
+
+Spectrum SpectrumReader::spectrum_of(const JsonCursor& where, Definition definition, Outside outside,
+                                     double maximum) const {
+    check_maximum(where, definition.spectrum, maximum, definition.column.has_value());
+    if (definition.column && definition.scale == 1.0 && maximum == 1.0 &&
+        definition.column->find('%') != std::string::npos)
+        warn(where.at_place(fmt::format("column \"{}\" is read as a share of 1; percentages have \"scale\": 0.01",
+                                        printable(*definition.column))));
     definition.spectrum.outside = definition.outside.value_or(outside);
-    return definition.spectrum;
+    return definition.by_nanometre ? definition.spectrum : definition.spectrum.at_whole_nanometres();
 }
 
 SpectrumReader::Definition SpectrumReader::read_object(const JsonCursor& place) {
     const ObjectReader where(place, "spectrum_object");
     if (where.kind() == "spectrum_file") return read_file_column(where);
-    if (where.kind() == "spectrum_illuminant") return {read_illuminant(where.at("illuminant").text()), Outside::zero};
-    if (where.kind() == "spectrum_pairs") return {read_pairs(where.at("pairs")), read_outside(where)};
-    return {Spectrum::constant(where.number("constant")), Outside::hold};
+    if (where.kind() == "spectrum_illuminant") {
+        Definition illuminant{read_illuminant(where.at("illuminant").text()), Outside::zero};
+        illuminant.by_nanometre = true;
+        return illuminant;
+    }
+    if (where.kind() == "spectrum_constant") return {Spectrum::constant(where.number("constant")), Outside::hold};
+    Definition pairs = read_pairs(where.at("pairs"), read_rules(where));
+    pairs.outside = read_outside(where);
+    return pairs;
+}
+
+SpectrumReader::Definition SpectrumReader::read_pairs(const JsonCursor& pairs, const SampleRules& rules) {
+    const WavelengthUnit unit = rules.unit.value_or(WavelengthUnit::nm);
+    std::vector<double> x;
+    Definition result;
+    Spectrum& spectrum = result.spectrum;
+    for (const JsonCursor& pair : pairs.items()) {
+        const auto both = pair.items();
+        if (both.size() != 2) pair.fail_expected("[wavelength in nm, value]");
+        x.push_back(both[0].number(wavelength_range));
+        check_order(both[0], x);
+        const double lambda_nm = wavelength_nm(unit, x.back());
+        spectrum.lambda_nm.push_back(lambda_nm);
+        const double factor = rules.per == Per::unit ? units_per_nm(unit, lambda_nm) : 1.0;
+        spectrum.value.push_back(both[1].number(value_range) * factor);
+    }
+    if (x.empty()) pairs.fail("expected at least one [wavelength in nm, value]");
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    result.range_fault = fault_of_range(unit, *low, *high);
+    result.density_doubt = doubt_of_density(rules.unit, rules.per);
+    if (spectrum.lambda_nm.front() > spectrum.lambda_nm.back()) {
+        std::reverse(spectrum.lambda_nm.begin(), spectrum.lambda_nm.end());
+        std::reverse(spectrum.value.begin(), spectrum.value.end());
+    }
+    return result;
 }
 
 SpectrumReader::Definition SpectrumReader::read_file_column(const ObjectReader& where) {
     const CsvTable& csv = tables_.read(where.at("file"));
     const JsonCursor column = where.at("column");
-    const std::string& name = column.text();
-    const double scale = where.number("scale");
-    Spectrum spectrum;
+    const SampleRules rules = read_rules(where);
+    Definition result;
     try {
-        spectrum = csv_spectrum(csv, name, Outside::zero).scaled(scale);
+        ColumnSpectrum read = read_column(csv, column.text(), Outside::zero, rules);
+        for (const std::string& remark : read.remarks) warn(column.at_place(remark));
+        result.spectrum = std::move(read.spectrum);
+        result.density_doubt = std::move(read.density_doubt);
     } catch (const InputError& error) {
         column.fail(error.what());
     }
-    check_maximum(where, spectrum, value_range.high);
-    return {std::move(spectrum), read_outside(where)};
+    result.scale = where.number("scale");
+    result.spectrum = result.spectrum.scaled(result.scale);
+    result.outside = read_outside(where);
+    result.column = csv.columns[csv_column(csv, column.text())];
+    check_maximum(where, result.spectrum, value_range.high, false);
+    return result;
 }
 
 }  // namespace stokes

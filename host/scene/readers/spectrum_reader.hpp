@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "host/core/csv_table.hpp"
-#include "host/core/spectrum.hpp"
+#include "host/core/csv_spectrum.hpp"
 #include "host/scene/readers/input_files.hpp"
 #include "host/scene/settings/object.hpp"
 
@@ -24,18 +23,33 @@ class SpectrumReader {
 
     // A name from "spectra", a number, or an object. Values are >= 0; one above maximum is an error. outside
     // holds where the scene does not say; a constant is the same everywhere, an illuminant zero outside its
-    // table.
+    // table. Samples are means over whole nanometres (Spectrum::at_whole_nanometres); illuminants are as CIE has them.
     Spectrum read(const JsonCursor& where, Outside outside, double maximum);
     // The same of an object's key, whose declaration has the maximum.
     Spectrum read(const ObjectReader& object, const char* key, Outside outside);
+    // The same of a density over wavelength, zero outside its table: one over photon energy is warned of, unless the
+    // scene says what it is per.
+    Spectrum read_density(const ObjectReader& object, const char* key);
+    // The same times what brings its largest sample from 300 to 830 nm to 1: of a relative spectrum.
+    Spectrum read_relative(const ObjectReader& object, const char* key);
 
   private:
     struct Definition {
         Spectrum spectrum;
         std::optional<Outside> outside;
+        bool by_nanometre = false;               // samples are those of whole nanometres already
+        std::optional<std::string> column = {};  // of a file
+        double scale = 1.0;                      // of its values
+        std::string range_fault = {};            // fault_of_range(), of pairs
+        std::string density_doubt = {};          // doubt_of_density()
     };
 
+    Definition density_at(const ObjectReader& object, const char* key);
+    Definition definition_at(const JsonCursor& where, double maximum);
+    Spectrum spectrum_of(const JsonCursor& where, Definition definition, Outside outside, double maximum) const;
+
     Definition read_object(const JsonCursor& where);
+    static Definition read_pairs(const JsonCursor& pairs, const SampleRules& rules);
     Definition read_file_column(const ObjectReader& where);
 
     InputFiles<CsvTable, read_csv> tables_;

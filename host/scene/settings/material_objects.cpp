@@ -1,4 +1,5 @@
 // Spectra, media, fluorophores and materials of a scene file.
+#include "host/core/csv_spectrum.hpp"
 #include "host/core/media_limits.hpp"
 #include "host/scene/scene.hpp"
 #include "host/scene/settings/objects.hpp"
@@ -15,6 +16,18 @@ const Key outside{"outside", OneWord{{"zero", "hold"}}, optional,
                   "Value beyond the ends of the table. By default media and reflectances hold the last one, and "
                   "everything else is zero."};
 
+const Key unit{"unit", OneWord{words_of<WavelengthUnit>}, optional,
+               "Of the wavelengths; eV, cm-1 and THz are photon energies, wavenumbers and frequencies. By default what "
+               "the name of the file's first column says (\"wavelength_um\", \"energy (eV)\"), or nm."};
+const Key per{
+    "per", OneWord{words_of<Per>}, std::string("nm"),
+    "What the values of a light or an emission are densities over: nm, whatever the unit of the wavelengths, or "
+    "that unit, in which case they are brought to densities per nm."};
+const Key negative{
+    "negative", OneWord{words_of<Negative>}, optional,
+    "What becomes of values below zero. By default those down to -0.02 of the largest value, noise about a "
+    "dark level, become zero with a warning, and lower ones are an error."};
+
 Objects spectrum_objects() {
     return {
         {"spectrum_object",
@@ -24,18 +37,27 @@ Objects spectrum_objects() {
          {},
          {"spectrum_file", "spectrum_illuminant", "spectrum_pairs", "spectrum_constant"}},
         {"spectrum_file",
-         "A column of a CSV file: lines that start with #, a line of column names, rows; wavelengths in nm in the "
-         "first column.",
+         "A column of a table: comments, a line of column names, rows, wavelengths in the first column. Straight lines "
+         "between the rows, of which every whole nanometre has the mean over itself.",
          {{"file", Text{}, required, "Its path, from the scene's folder."},
-          {"column", Text{}, required, "Its name."},
+          {"column", Text{}, required,
+           "Its name; or its number, \"2\" for the first after the wavelengths, in a file without a line of names."},
           {"scale", value_range, 1.0, "Times this."},
+          unit,
+          per,
+          negative,
           outside}},
         {"spectrum_illuminant",
          "A CIE illuminant, 100 at 560 nm; zero outside 300-830 nm.",
          {{"illuminant", OneWord{{"A", "D65", "E"}}, required, "Its name."}}},
         {"spectrum_pairs",
-         "Straight lines between points.",
-         {{"pairs", ListOf{"spectrum_pair", 1}, required, "[wavelength in nm, value], wavelengths increasing."},
+         "Straight lines between points, of which every whole nanometre has the mean over itself. One point alone, "
+         "zero "
+         "outside, stands for the nanometre about it.",
+         {{"pairs", ListOf{"spectrum_pair", 1}, required,
+           "[wavelength in nm, or in the unit, value], wavelengths increasing, or decreasing."},
+          unit,
+          per,
           outside}},
         {"spectrum_constant", "The same at every wavelength.", {{"constant", value_range, required, "Its value."}}},
     };
@@ -110,15 +132,25 @@ Objects material_objects() {
                         {"dipole_eta", NumberRange{1.0, largest_dipole_eta}, 1.0,
                          "Refractive index in the boundary condition of multiple scattering; 1: no internal "
                          "reflection."}}});
-    objects.push_back({"fluorophore",
-                       "A substance that takes up light and gives it off at longer wavelengths.",
-                       {{"excitation", up_to_1, required, "Relative."},
-                        {"emission", up_to_1, required, "Relative; not zero everywhere."},
-                        {"conversion_per_nm", unit_range, Fluorophore().conversion,
-                         "Emission at the peak per exciting flux, for transport paper."},
-                        {"quantum_yield", unit_range, optional,
-                         "Photons emitted for each one taken up, for transport conserving and walk. By default "
-                         "conversion_per_nm times the sum of the emission over whole nanometres, 1 at most."}}});
+    objects.push_back(
+        {"fluorophore",
+         "A substance that takes up light and gives it off at longer wavelengths.",
+         {{"excitation", up_to_1, required,
+           "Share of the light that meets the fluorophore and is taken up; it has its scale."},
+          {"emission", any_spectrum, required,
+           "Relative, of any scale; not zero everywhere. In photons per nm for transport conserving and "
+           "walk, in energy per nm for paper."},
+          {"conversion_per_nm", unit_range, Fluorophore().conversion,
+           "Emission at the peak, the largest value of its table, per exciting flux, for transport paper."},
+          {"quantum_yield", unit_range, optional,
+           "Photons emitted for each one taken up, for transport conserving and walk. By default "
+           "conversion_per_nm times the sum over whole nanometres of the emission over its peak, 1 at "
+           "most."},
+          {"stokes_rule", OneWord{words_of<StokesRule>}, optional,
+           "Light is emitted above the exciting wavelength only. keep_yield brings what is left of the "
+           "emission back to the whole; truncate does not, so that less is emitted where excitation and "
+           "emission overlap. Where nothing is left, nothing is emitted. By default keep_yield, for "
+           "transport paper truncate."}}});
     const Objects kinds = materials();
     objects.insert(objects.end(), kinds.begin(), kinds.end());
     return objects;
