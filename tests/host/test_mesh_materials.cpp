@@ -109,7 +109,7 @@ TEST_CASE("Mistakes in the materials of a mesh are named", "[mesh_materials]") {
     CHECK_THAT(folder.error(R"("file": "tile.obj", "materials": ["a", "b"])"), Contains("expected an object"));
     CHECK_THAT(folder.error(R"("file": "tile.obj")"), Contains("shapes[0]: missing key \"material\""));
     CHECK_THAT(folder.error(R"("file": "tile.obj", "body": "x", "materials": {"jade": "a", "milk": "b"})"),
-               Contains("shapes[0].body: expected one material in a body"));
+               Contains("shapes[0].body: expected either this or \"materials\", got both"));
     CHECK_THAT(folder.error(R"("file": "m.ply", "materials": {"jade": "a"})"),
                Contains("shapes[0].materials: expected an OBJ file"));
 }
