@@ -124,3 +124,24 @@ TEST_CASE("Several materials or objects that become one body are told", "[mesh_m
     CHECK(folder.warnings(R"("file": "one.obj", "material": "c")").empty());
     CHECK(folder.warnings(R"("file": "two.obj", "materials": {"jade": "c", "milk": "c"})").empty());
 }
+
+// Mirrored, the file's outside stays outside: it faces inward before and after.
+TEST_CASE("A closed mesh that faces inward is turned over with a warning, by every transport", "[mesh_materials]") {
+    const Folder folder;
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+    put_file(folder.file("in.obj"), text);
+    for (const char* mirror : {"", R"(, "transform": [{"scale": [-1, 1, 1]}])"})
+        for (const char* material : {"a", "c"}) {
+            const std::string shape = R"("file": "in.obj", "material": ")" + std::string(material) + "\"" + mirror;
+            CHECK_THAT(folder.warnings(shape),
+                       Contains("shapes[0] (shape 0): its closed surface faces inward: turned over 4 triangles"));
+            CHECK(mesh_volume_mm3(folder.scene(shape).shapes[0].mesh) == Approx(1.0 / 6));
+        }
+    put_file(folder.file("s.json"), folder.text(R"("file": "in.obj", "material": "a")"));
+    for (const char* transport : {"paper", "conserving", "walk"}) {
+        const Outcome outcome = run_stokes("render " + folder.file("s.json") + " --quiet --transport " + transport +
+                                           " --png " + folder.file("o.png") + small_render);
+        CHECK(outcome.code == 0);
+        CHECK_THAT(outcome.err, Contains("faces inward: turned over 4 triangles"));
+    }
+}

@@ -20,7 +20,7 @@ class Placement {
     // precision about the origin. Drops triangles without area, there or already before, and turns closed meshes of
     // files over that face inward, with warnings. Throws InputError at the shape when no triangle is left, when a
     // coordinate is not finite or too large, or when its material has a texture and the mesh no uv.
-    void settle(const JsonCursor& camera, Scene& scene);
+    void settle(const JsonCursor& root, Scene& scene);
 
   private:
     struct Placed {
