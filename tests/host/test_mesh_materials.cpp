@@ -145,3 +145,16 @@ TEST_CASE("A closed mesh that faces inward is turned over with a warning, by eve
         CHECK_THAT(outcome.err, Contains("faces inward: turned over 4 triangles"));
     }
 }
+
+// The camera is at (0, 9, 9). A sheet in y = 0 shows it the back where it faces -y; one that is bent shows it a part.
+TEST_CASE("An open mesh that faces away from the camera as a whole is told", "[mesh_materials]") {
+    const Folder folder;
+    const std::string sheet = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 2 -1\nv 1 2 -1\n";
+    const std::string told = "shapes[0] (shape 0): all of it faces away from the camera, which sees its black back";
+    put_file(folder.file("down.obj"), sheet + "f 1 2 3 4\n");
+    put_file(folder.file("up.obj"), sheet + "f 4 3 2 1\n");
+    put_file(folder.file("bent.obj"), sheet + "f 1 2 3 4\nf 1 2 6 5\n");
+    CHECK_THAT(folder.warnings(R"("file": "down.obj", "material": "c")"), Contains(told));
+    CHECK(folder.warnings(R"("file": "up.obj", "material": "c")").empty());
+    CHECK_THAT(folder.warnings(R"("file": "bent.obj", "material": "c")"), !Contains(told));
+}

@@ -20,6 +20,13 @@ void warn_at(const JsonCursor& where, const std::string& name, const std::string
     warn(fmt::format("{}: {} ({}): {}", where.file(), where.path(), name, what));
 }
 
+// The eye is behind every triangle.
+bool faces_away(const Mesh& mesh, const glm::dvec3& eye_mm) {
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const glm::uvec3& t) {
+        return glm::dot(area_vector_mm2(mesh, t), eye_mm - glm::dvec3(mesh.positions_mm[t.x])) < 0.0;
+    });
+}
+
 void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count, const char* what) {
     if (count == 0) return;
     warn_at(where, name, fmt::format("left out {} triangle{} {}", count, count == 1 ? "" : "s", what));
@@ -133,6 +140,9 @@ void Placement::turn_inside_out(Scene& scene) const {
             warn_at(shapes_[i].where, shape.name,
                     fmt::format("its closed surface faces inward: turned over {} triangle{}", found.turned,
                                 found.turned == 1 ? "" : "s"));
+        const auto away = [&](const Mesh* mesh) { return faces_away(*mesh, scene.camera.position_mm); };
+        if (std::all_of(meshes.begin(), meshes.end(), away))
+            warn_at(shapes_[i].where, shape.name, "all of it faces away from the camera, which sees its black back");
         const glm::dvec3 at = found.place_mm + scene.origin_mm;
         if (found.inconsistent > 0)
             warn_at(shapes_[i].where, shape.name,
