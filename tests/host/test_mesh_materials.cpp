@@ -109,7 +109,7 @@ TEST_CASE("Mistakes in the materials of a mesh are named", "[mesh_materials]") {
     CHECK_THAT(folder.error(R"("file": "tile.obj", "materials": ["a", "b"])"), Contains("expected an object"));
     CHECK_THAT(folder.error(R"("file": "tile.obj")"), Contains("shapes[0]: missing key \"material\""));
     CHECK_THAT(folder.error(R"("file": "tile.obj", "body": "x", "materials": {"jade": "a", "milk": "b"})"),
-               Contains("shapes[0].body: expected one material in a body"));
+               Contains("shapes[0].body: expected either this or \"materials\", got both"));
     CHECK_THAT(folder.error(R"("file": "m.ply", "materials": {"jade": "a"})"),
                Contains("shapes[0].materials: expected an OBJ file"));
 }
@@ -123,4 +123,38 @@ TEST_CASE("Several materials or objects that become one body are told", "[mesh_m
                Contains("2 objects of the file become one body of material \"a\""));
     CHECK(folder.warnings(R"("file": "one.obj", "material": "c")").empty());
     CHECK(folder.warnings(R"("file": "two.obj", "materials": {"jade": "c", "milk": "c"})").empty());
+}
+
+// Mirrored, the file's outside stays outside: it faces inward before and after.
+TEST_CASE("A closed mesh that faces inward is turned over with a warning, by every transport", "[mesh_materials]") {
+    const Folder folder;
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+    put_file(folder.file("in.obj"), text);
+    for (const char* mirror : {"", R"(, "transform": [{"scale": [-1, 1, 1]}])"})
+        for (const char* material : {"a", "c"}) {
+            const std::string shape = R"("file": "in.obj", "material": ")" + std::string(material) + "\"" + mirror;
+            CHECK_THAT(folder.warnings(shape),
+                       Contains("shapes[0] (shape 0): its closed surface faces inward: turned over 4 triangles"));
+            CHECK(mesh_volume_mm3(folder.scene(shape).shapes[0].mesh) == Approx(1.0 / 6));
+        }
+    put_file(folder.file("s.json"), folder.text(R"("file": "in.obj", "material": "a")"));
+    for (const char* transport : {"paper", "conserving", "walk"}) {
+        const Outcome outcome = run_stokes("render " + folder.file("s.json") + " --quiet --transport " + transport +
+                                           " --png " + folder.file("o.png") + small_render);
+        CHECK(outcome.code == 0);
+        CHECK_THAT(outcome.err, Contains("faces inward: turned over 4 triangles"));
+    }
+}
+
+// The camera is at (0, 9, 9). A sheet in y = 0 shows it the back where it faces -y; one that is bent shows it a part.
+TEST_CASE("An open mesh that faces away from the camera as a whole is told", "[mesh_materials]") {
+    const Folder folder;
+    const std::string sheet = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 2 -1\nv 1 2 -1\n";
+    const std::string told = "shapes[0] (shape 0): all of it faces away from the camera, which sees its black back";
+    put_file(folder.file("down.obj"), sheet + "f 1 2 3 4\n");
+    put_file(folder.file("up.obj"), sheet + "f 4 3 2 1\n");
+    put_file(folder.file("bent.obj"), sheet + "f 1 2 3 4\nf 1 2 6 5\n");
+    CHECK_THAT(folder.warnings(R"("file": "down.obj", "material": "c")"), Contains(told));
+    CHECK(folder.warnings(R"("file": "up.obj", "material": "c")").empty());
+    CHECK_THAT(folder.warnings(R"("file": "bent.obj", "material": "c")"), !Contains(told));
 }

@@ -198,11 +198,11 @@ TEST_CASE("Mesh files are read by their ending") {
     const TemporaryFolder folder;
     put_file(folder.file("a.ply"), ascii_square);
     put_file(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    put_file(folder.file("a.stl"), "");
+    put_file(folder.file("a.step"), "");
     check_square(as_read(read_mesh(folder.file("a.ply"))));
     CHECK(read_mesh(folder.file("a.obj")).triangles.size() == 1);
-    CHECK(input_error([&] { read_mesh(folder.file("a.stl")); }) ==
-          folder.file("a.stl") + ": expected a mesh file that ends in .ply or .obj");
+    CHECK(input_error([&] { read_mesh(folder.file("a.step")); }) ==
+          folder.file("a.step") + ": expected a mesh file that ends in .ply, .obj or .stl");
     CHECK(input_error([&] { read_mesh(folder.file("b.ply")); }) ==
           folder.file("b.ply") + ": cannot read: No such file or directory");
 }

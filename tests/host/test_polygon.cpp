@@ -199,3 +199,18 @@ TEST_CASE("A polygon far from the origin is cut as near it") {
     CHECK(cut_polygon(far, there) == PolygonCut::exact);
     CHECK(here == there);
 }
+
+// A plate of 3 x 401 with 200 holes of 1 x 1 in a row, each joined to the next by a bridge: 1203 - 200 of area.
+TEST_CASE("Many holes on a chain of bridges stay empty") {
+    constexpr int holes = 200;
+    std::vector<glm::dvec2> plate = {{0, 0}, {2 * holes + 1, 0}, {2 * holes + 1, 3}, {0, 3}, {0, 0}};
+    for (int i = 0; i < holes; ++i)  // half around each hole, on to the next one
+        for (const auto& [x, y] : {std::pair(1, 1), std::pair(1, 2), std::pair(2, 2)}) plate.emplace_back(2 * i + x, y);
+    for (int i = holes - 1; i >= 0; --i) {  // and back, by the bridge between (2, 2) and (3, 1)
+        plate.emplace_back(2 * i + 2, 1);
+        plate.emplace_back(2 * i + 1, 1);
+        if (i > 0) plate.emplace_back(2 * i, 2);
+    }
+    CHECK(shoelace(flat(plate)) == 1003.0);
+    check_cover(flat(plate));
+}

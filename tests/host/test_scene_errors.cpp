@@ -330,6 +330,8 @@ TEST_CASE("Bad scenes: shapes and transforms") {
             {"{\"scale\": 2}", "{\"scale\": [1, 0, 1]}",
              ":19: shapes[0].transform[0].scale[1]: expected a scale other than zero"},
             {"{\"scale\": 2}", "{\"scale\": 1e8}", ":18: shapes[0]: expected coordinates in [-1e+07, 1e+07] mm"},
+            // What the camera sees stays, and the origin with it.
+            {"[1, 2, 3]", "[0, 2e9, 0]", ":18: shapes[0]: expected coordinates in [-1e+07, 1e+07] mm"},
             {"{\"scale\": 2}", "{\"scale\": 1, \"translate_mm\": [0, 0, 0]}",
              ":19: shapes[0].transform[0]: \"scale\" and \"translate_mm\" given together"},
             {"{\"scale\": 2}", "{}", ":19: shapes[0].transform[0]: expected one of the keys"},

@@ -70,6 +70,25 @@ TEST_CASE("A texture needs a shape with coordinates") {
     }
 }
 
+// Rectangles lie within their picture, and do not blend its edges.
+TEST_CASE("Textures of meshes repeat, unless they are clamped; coordinates keep the place in the picture") {
+    const Folder folder;
+    put_file(folder.file("tile.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 7.1 -2.75\nvt 8 -2\nvt 7 -3\nf 1/1 2/2 3/3\n");
+    const std::string mesh = R"({"type": "mesh", "file": "tile.obj", "material": "wall"})";
+    const std::string clamped = R"({"texture": "t.png", "black": 0, "white": 1, "wrap": "clamp"})";
+    CHECK_FALSE(folder.scene(good, rectangle).shapes[1].texture_repeats);
+    const Scene repeated = folder.scene(good, mesh);
+    CHECK(repeated.shapes[1].texture_repeats);
+    const auto& uv = repeated.shapes[1].mesh.uv[0];  // v from the top: 3.75, 3 and 4, less 3
+    CHECK(uv[0].x == Approx(0.1f).epsilon(1e-6));
+    CHECK(uv[0].y == 0.75f);
+    CHECK(uv[1] == glm::vec2(1, 0));
+    CHECK(uv[2] == glm::vec2(0, 1));
+    const Scene ends = folder.scene(clamped, mesh);
+    CHECK_FALSE(ends.shapes[1].texture_repeats);
+    CHECK(ends.shapes[1].mesh.uv[0][1] == glm::vec2(8, 3));
+}
+
 TEST_CASE("Mistakes in textures are named") {
     const Folder folder;
     CHECK(folder.error(R"({"texture": "t.png", "black": 0.1})") ==
@@ -82,4 +101,11 @@ TEST_CASE("Mistakes in textures are named") {
                Contains("s.json:3: materials.wall.reflectance.texture: ") && Contains("bad.png: not a PNG file"));
     CHECK_THAT(folder.error(R"({"texture": "no.png", "black": 0, "white": 1})"), Contains("no.png: cannot read"));
     CHECK_THAT(folder.error(R"({"texture": 5, "black": 0, "white": 1})"), Contains("expected a string, got 5"));
+    CHECK_THAT(folder.error(R"({"texture": "t.png", "black": 0, "white": 1, "wrap": "mirror"})"),
+               Contains("reflectance.wrap: expected \"repeat\" or \"clamp\", got \"mirror\""));
+    for (const char* name : {"wood.<UDIM>.png", "wood_%(UDIM)d.png", "wood.<UVTILE>.png"}) {
+        INFO(name);
+        CHECK_THAT(folder.error(R"({"texture": ")" + std::string(name) + R"(", "black": 0, "white": 1})"),
+                   Contains("expected one PNG file, got a name for UDIM tiles, which are not read"));
+    }
 }

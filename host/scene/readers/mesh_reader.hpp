@@ -1,4 +1,4 @@
-// Triangle meshes from PLY and OBJ files.
+// Triangle meshes from PLY, OBJ and STL files.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace stokes {
 
-// Reads the mesh in a file by its ending, .ply or .obj in letters of either case, in the file's own units and without
-// cleaning it. Polygons are cut into triangles. Throws InputError "FILE:LINE: ..." (binary parts: "FILE: vertex N:
+// Reads the mesh in a file by its ending, .ply, .obj or .stl in letters of either case, in the file's own units and
+// without cleaning it. Polygons are cut into triangles. Throws InputError "FILE:LINE: ..." (binary parts: "FILE: vertex
+// N:
 // ...") for a file that cannot be read or is cut short, coordinates that are not finite, indices out of range, and a
 // mesh without triangles.
 FileMesh read_mesh(const std::string& path);
@@ -23,5 +24,8 @@ FileMesh parse_ply(std::string_view text, const std::string& file);
 // Where a corner has no vt, or one that does not exist, the mesh has no texture coordinates. In files (0, 0) is a
 // picture's bottom left corner; in the mesh it is the top left one.
 FileMesh parse_obj(std::string_view text, const std::string& file);
+// STL: ascii, or binary as its size tells; every triangle has corners of its own, and the order of these says where the
+// outside is, not the normals.
+FileMesh parse_stl(std::string_view text, const std::string& file);
 
 }  // namespace stokes

@@ -1,9 +1,10 @@
-// Text of mesh files, whatever ends their lines.
+// What readers of mesh files have in common.
 #pragma once
 
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "host/scene/mesh/file_mesh.hpp"
 
 namespace stokes {
 
@@ -16,5 +17,8 @@ bool has_lone_returns(std::string_view text);
 
 // "FILE:LINE: WHAT" of faces that cross themselves, the first of which is named by its place.
 std::string crossing_remark(const std::string& place, std::size_t faces);
+
+// Adds a remark where coordinates that were rounded to single precision have steps that show.
+void remark_on_steps(FileMesh& mesh, const std::string& file);
 
 }  // namespace stokes

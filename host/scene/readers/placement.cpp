@@ -20,6 +20,13 @@ void warn_at(const JsonCursor& where, const std::string& name, const std::string
     warn(fmt::format("{}: {} ({}): {}", where.file(), where.path(), name, what));
 }
 
+// The eye is behind every triangle.
+bool faces_away(const Mesh& mesh, const glm::dvec3& eye_mm) {
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const glm::uvec3& t) {
+        return glm::dot(area_vector_mm2(mesh, t), eye_mm - glm::dvec3(mesh.positions_mm[t.x])) < 0.0;
+    });
+}
+
 void warn_of_triangles(const JsonCursor& where, const std::string& name, std::size_t count, const char* what) {
     if (count == 0) return;
     warn_at(where, name, fmt::format("left out {} triangle{} {}", count, count == 1 ? "" : "s", what));
@@ -53,14 +60,16 @@ void move_camera(const JsonCursor& where, Camera& camera, const glm::dvec3& orig
     check_range(where, camera.position_mm, origin_mm);
 }
 
-void move_beams(Scene& scene) {
-    for (Light& light : scene.lights)
+void move_beams(const std::vector<JsonCursor>& where, Scene& scene) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
         std::visit(
             [&](auto& kind) {
-                if constexpr (std::is_base_of_v<Beam, std::decay_t<decltype(kind)>>)
+                if constexpr (std::is_base_of_v<Beam, std::decay_t<decltype(kind)>>) {
                     kind.position_mm -= scene.origin_mm;
+                    check_range(where[i], kind.position_mm, scene.origin_mm);
+                }
             },
-            light.kind);
+            scene.lights[i].kind);
 }
 
 }  // namespace
@@ -74,12 +83,12 @@ int Placement::add(const JsonCursor& where, Shape shape, const Mesh& mesh, const
     return add(where, std::move(shape), as_file_mesh(mesh), transform);
 }
 
-void Placement::settle(const JsonCursor& camera, Scene& scene) {
+void Placement::settle(const JsonCursor& root, Scene& scene) {
     std::vector<Bounds> bounds;
     for (const Placed& placed : shapes_) bounds.push_back(bounds_of(placed.mesh, placed.transform));
     scene.origin_mm = scene_origin_mm(scene.camera, bounds);
-    move_camera(camera, scene.camera, scene.origin_mm);
-    move_beams(scene);
+    move_camera(root.at("camera"), scene.camera, scene.origin_mm);
+    move_beams(root.at("lights").items(), scene);
     for (Placed& placed : shapes_) move_to_origin(placed, scene);
     turn_inside_out(scene);
 }
@@ -129,8 +138,11 @@ void Placement::turn_inside_out(Scene& scene) const {
         const Orientation found = turn_outward(meshes, scene.camera.position_mm);
         if (found.turned > 0)
             warn_at(shapes_[i].where, shape.name,
-                    fmt::format("turned over {} triangle{} of a closed surface that faced inward", found.turned,
+                    fmt::format("its closed surface faces inward: turned over {} triangle{}", found.turned,
                                 found.turned == 1 ? "" : "s"));
+        const auto away = [&](const Mesh* mesh) { return faces_away(*mesh, scene.camera.position_mm); };
+        if (std::all_of(meshes.begin(), meshes.end(), away))
+            warn_at(shapes_[i].where, shape.name, "all of it faces away from the camera, which sees its black back");
         const glm::dvec3 at = found.place_mm + scene.origin_mm;
         if (found.inconsistent > 0)
             warn_at(shapes_[i].where, shape.name,

@@ -18,9 +18,10 @@ class Placement {
 
     // Chooses Scene::origin_mm, moves camera and beams, and appends the shapes to the scene, rounded to single
     // precision about the origin. Drops triangles without area, there or already before, and turns closed meshes of
-    // files over that face inward, with warnings. Throws InputError at the shape when no triangle is left, when a
-    // coordinate is not finite or too large, or when its material has a texture and the mesh no uv.
-    void settle(const JsonCursor& camera, Scene& scene);
+    // files over that face inward, with warnings, and warns of those that show the camera their back. Throws InputError
+    // at the shape when no triangle is left, when a coordinate is not finite or too large, or when its material has a
+    // texture and the mesh no uv.
+    void settle(const JsonCursor& root, Scene& scene);
 
   private:
     struct Placed {

@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstring>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -12,88 +9,10 @@
 #include "host/scene/readers/mesh_reader.hpp"
 #include "host/scene/readers/mesh_text.hpp"
 #include "host/scene/readers/ply_header.hpp"
+#include "host/scene/readers/ply_source.hpp"
 
 namespace stokes {
 namespace {
-
-// Values of an ascii body, one token each.
-class AsciiSource {
-  public:
-    explicit AsciiSource(const TextScanner& body) : scanner_(body) {}
-
-    std::size_t bytes_left() const { return scanner_.rest().size(); }
-    std::string place(const std::string& file, const std::string& record) const {
-        return fmt::format("{}:{}: {}", file, scanner_.line(), record);
-    }
-    // False: no such value here.
-    bool take(PlyType type, double& value) {
-        token_ = scanner_.token_across_lines();
-        if (type == PlyType::float32 || type == PlyType::float64) {
-            const auto number = parse_double(token_);
-            value = number.value_or(0.0);
-            return number.has_value();
-        }
-        const auto number = parse_integer(token_);
-        value = static_cast<double>(number.value_or(0));
-        return number.has_value();
-    }
-    std::string got() const { return token_.empty() ? "the end of the file" : '"' + printable(token_) + '"'; }
-
-  private:
-    TextScanner scanner_;
-    std::string_view token_;
-};
-
-// Values of a binary body. A double holds each of the types exactly.
-class BinarySource {
-  public:
-    BinarySource(const TextScanner& body, bool big_endian) : rest_(body.rest()), big_endian_(big_endian) {}
-
-    std::size_t bytes_left() const { return rest_.size(); }
-    std::string place(const std::string& file, const std::string& record) const { return file + ": " + record; }
-    bool take(PlyType type, double& value) {
-        switch (type) {
-            case PlyType::int8:
-                return take_as<std::int8_t>(value);
-            case PlyType::uint8:
-                return take_as<std::uint8_t>(value);
-            case PlyType::int16:
-                return take_as<std::int16_t>(value);
-            case PlyType::uint16:
-                return take_as<std::uint16_t>(value);
-            case PlyType::int32:
-                return take_as<std::int32_t>(value);
-            case PlyType::uint32:
-                return take_as<std::uint32_t>(value);
-            case PlyType::float32:
-                return take_as<float>(value);
-            case PlyType::float64:
-                break;
-        }
-        return take_as<double>(value);
-    }
-    std::string got() const { return "the end of the file"; }
-
-  private:
-    template <typename T>
-    bool take_as(double& value) {
-        if (rest_.size() < sizeof(T)) return false;
-        char bytes[sizeof(T)];
-        std::memcpy(bytes, rest_.data(), sizeof bytes);
-        if (big_endian_) std::reverse(std::begin(bytes), std::end(bytes));
-        T typed;
-        std::memcpy(&typed, bytes, sizeof bytes);
-        rest_.remove_prefix(sizeof bytes);
-        value = static_cast<double>(typed);
-        return true;
-    }
-
-    std::string_view rest_;
-    bool big_endian_;
-};
-
-// Steps of single precision above this share of a mesh's size show.
-constexpr double largest_step = 2e-4;
 
 template <typename Source>
 class PlyBody {
@@ -181,26 +100,8 @@ class PlyBody {
         if (u >= 0) uvs_.reserve(static_cast<std::size_t>(element_->count));
         for (record_ = 0; record_ < element_->count; ++record_) take_vertex(properties);
         for (const int axis : axes)
-            if (element_->properties[static_cast<std::size_t>(axis)].type == PlyType::float32) return remark_on_steps();
-    }
-
-    // Coordinates that were rounded before they came here.
-    void remark_on_steps() {
-        if (mesh_.positions.empty()) return;
-        glm::dvec3 low = mesh_.positions.front(), high = low;
-        for (const glm::dvec3& p : mesh_.positions) {
-            low = glm::min(low, p);
-            high = glm::max(high, p);
-        }
-        const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high)), size = high - low;
-        const double step = std::numeric_limits<float>::epsilon() * std::max({far.x, far.y, far.z});
-        const double extent = std::max({size.x, size.y, size.z});
-        if (step > largest_step * extent)
-            mesh_.remarks.push_back(
-                fmt::format("{}: its coordinates are in single precision (float) with steps of {:.2g}, far from their "
-                            "origin beside its "
-                            "size of {:.3g}; as doubles, or nearer to the origin, they would keep its form",
-                            file_, step, extent));
+            if (element_->properties[static_cast<std::size_t>(axis)].type == PlyType::float32)
+                return remark_on_steps(mesh_, file_);
     }
 
     // Indices of the texture coordinates; -1 without them.
@@ -387,14 +288,6 @@ FileMesh parse_ply(std::string_view text, const std::string& file) {
     }
     const BinarySource source(scanner, header.format == PlyFormat::big_endian);
     return PlyBody<BinarySource>(header, source, file).parse();
-}
-
-FileMesh read_mesh(const std::string& path) {
-    std::string ending = path.size() < 4 ? std::string() : path.substr(path.size() - 4);
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (ending == ".ply") return parse_ply(read_file(path), path);
-    if (ending == ".obj") return parse_obj(read_file(path), path);
-    throw InputError(path + ": expected a mesh file that ends in .ply or .obj");
 }
 
 }  // namespace stokes

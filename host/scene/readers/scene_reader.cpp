@@ -48,7 +48,7 @@ Scene parse_scene(std::string_view text, const std::string& path, const FlagValu
     Placement placement;
     if (const auto shapes = root.find("shapes")) read_shapes(*shapes, folder, scene, placement);
     read_lights(root.at("lights"), spectra, scene, placement);
-    placement.settle(root.at("camera"), scene);
+    placement.settle(root, scene);
     read_emitter_spectra(root.at("lights"), spectra, scene);
     if (scene.shapes.empty()) root.fail("nothing to see: no shapes, and no light with a surface");
     return scene;

@@ -8,13 +8,12 @@
 
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
-#include "host/core/text_input.hpp"
-#include "host/scene/mesh/material_parts.hpp"
 #include "host/scene/mesh/mesh.hpp"
 #include "host/scene/mesh/shapes.hpp"
 #include "host/scene/readers/input_files.hpp"
 #include "host/scene/readers/mask.hpp"
 #include "host/scene/readers/material_reader.hpp"
+#include "host/scene/readers/mesh_materials.hpp"
 #include "host/scene/readers/mesh_reader.hpp"
 #include "host/scene/readers/picture.hpp"
 #include "host/scene/settings/object.hpp"
@@ -161,91 +160,24 @@ int read_body(const JsonCursor& shape, int material, Scene& scene, std::map<std:
     return entry->second;
 }
 
-std::string quoted(const std::vector<std::string>& names) {
-    std::string text;
-    for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 8); ++i)
-        text += (i > 0 ? ", " : "") + (names[i].empty() ? "none" : "\"" + printable(names[i]) + "\"");
-    return text + (names.size() > 8 ? ", ..." : "");
-}
-
-// Materials and objects of a file that the shape does not tell apart.
-void warn_of_one_material(const ObjectReader& where, const std::string& name, const FileMesh& mesh,
-                          const Material& material) {
-    const bool one_body = mesh.objects > 1 && medium_of(material).has_value();
-    if (mesh.materials.size() < 2 && !one_body) return;
-    const std::string objects = mesh.objects > 1 ? fmt::format("{} objects", mesh.objects) : "";
-    const std::string materials = mesh.materials.size() > 1
-                                      ? fmt::format("{} materials ({})", mesh.materials.size(), quoted(mesh.materials))
-                                      : "";
-    warn(fmt::format("{}: {} ({}): {}{}{} of the file become one body of material \"{}\"{}", where.file(), where.path(),
-                     name, materials, materials.empty() || objects.empty() ? "" : " and ", objects, material.name,
-                     materials.empty() ? "" : "; \"materials\" gives each its own"));
-}
-
-// The index in the scene's materials of each of the file's.
-std::vector<int> materials_of_file(const ObjectReader& where, const FileMesh& mesh, const Scene& scene) {
-    const JsonCursor given = where.at("materials");
-    const auto fallback = where.find("material");
-    const auto members = given.members();
-    std::vector<int> materials;
-    for (const std::string& name : mesh.materials) {
-        const auto found =
-            std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == name; });
-        if (found == members.end() && !fallback)
-            given.fail(fmt::format("expected a material for {}, or the key \"material\" for all that are not named",
-                                   name.empty() ? "the faces without usemtl" : "\"" + printable(name) + "\""));
-        materials.push_back(
-            index_of_name(found == members.end() ? *fallback : found->second, "materials", scene.materials));
-    }
-    for (const auto& [name, material] : members) {
-        index_of_name(material, "materials", scene.materials);
-        if (std::find(mesh.materials.begin(), mesh.materials.end(), name) != mesh.materials.end()) continue;
-        const std::string closest = closest_name(name, mesh.materials);
-        const bool has_none = mesh.materials == std::vector<std::string>{""};
-        material.fail(fmt::format("the mesh has no material \"{}\"; {}", printable(name),
-                                  closest.empty() ? "it has " + (has_none ? "none" : quoted(mesh.materials))
-                                                  : "did you mean \"" + closest + "\"?"));
-    }
-    return materials;
-}
-
 // A mesh whose file names materials: one shape of the scene for each of the scene's materials.
 void read_materials_of_mesh(const ObjectReader& where, const std::string& name, const FileMesh& mesh, Scene& scene,
                             Placement& placement) {
-    const std::vector<int> materials = materials_of_file(where, mesh, scene);
-    std::vector<int> used;  // each once
-    std::vector<std::size_t> part_of_material;
-    std::vector<bool> below_surface;
-    for (const int material : materials) {
-        const auto found = std::find(used.begin(), used.end(), material);
-        part_of_material.push_back(static_cast<std::size_t>(found - used.begin()));
-        if (found != used.end()) continue;
-        used.push_back(material);
-        below_surface.push_back(medium_of(material_of(scene, material)).has_value());
-    }
-    if (const auto body = where.find("body"); body && used.size() > 1)
-        body->fail("expected one material in a body, got a mesh of several");
-    const std::vector<FileMesh> parts = split_mesh(mesh, part_of_material, used.size());
-    const std::vector<std::size_t> first_of_body = joined_parts(parts, below_surface);
-    std::vector<int> bodies;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (MaterialPart& part : read_material_parts(where, mesh, scene)) {
         Shape shape;
-        shape.name = fmt::format("{} ({})", name, material_of(scene, used[i]).name);
-        shape.material = used[i];
-        bodies.push_back(first_of_body[i] < i ? bodies[first_of_body[i]] : scene.body_count++);
-        shape.body = bodies.back();
-        placement.add(where, std::move(shape), parts[i], read_transform(where), true);
+        shape.name = fmt::format("{} ({})", name, material_of(scene, part.material).name);
+        shape.material = part.material;
+        shape.body = part.body;
+        placement.add(where, std::move(shape), std::move(part.mesh), read_transform(where), true);
     }
 }
 
-// A mesh file, its remarks said. Throws InputError where the file has no materials to name.
+// A mesh file, its remarks said.
 const FileMesh& read_file_mesh(const ObjectReader& where, const std::string& name, ShapeFiles& files) {
     const FileMesh& mesh = files.meshes.read(where.at("file"));
     for (const std::string& remark : mesh.remarks)
         warn(fmt::format("{}: {} ({}): {}", where.file(), where.path(), name, remark));
     if (!where.has("material") && !where.has("materials")) where.fail("missing key \"material\"");
-    if (where.has("materials") && mesh.materials.empty())
-        where.at("materials").fail("expected an OBJ file, which names the materials of its faces");
     return mesh;
 }
 

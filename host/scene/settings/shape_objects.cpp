@@ -66,7 +66,7 @@ Objects transforms() {
 
 ObjectDeclaration mesh() {
     ObjectDeclaration object = shape("mesh", "Triangles and polygons from a file, one unit of which is taken as 1 mm.",
-                                     {{"file", Text{}, required, "A PLY or OBJ file."}},
+                                     {{"file", Text{}, required, "A PLY, OBJ or STL file."}},
                                      "A name in materials. Needed unless `materials` names one for all faces.");
     for (Key& key : object.keys)
         if (key.name == "material") key.fallback = optional;
