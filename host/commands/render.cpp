@@ -15,6 +15,7 @@
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
 #include "host/render/assumptions.hpp"
+#include "host/render/ignored_keys.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
 #include "host/render/translucent_bodies.hpp"
@@ -97,6 +98,9 @@ void render(const RenderOptions& options) {
     const std::unique_ptr<ErrorCurve> curve = make_curve(options, scene.film);
     for (const Transport transport : transports_of(scene))
         for (const std::string& line : transport_model(transport).remarks(scene)) warn(line);
+    for (const std::string& line : ignored_keys(scene)) warn(line);
+    if (const std::string line = unused_objects(scene); !line.empty() && !options.quiet)
+        fmt::print(stderr, "stokes: note: {}\n", line);
     for (const std::string& line : failed_assumptions(scene)) warn(line);
     std::signal(SIGINT, catch_signal);
     std::signal(SIGTERM, catch_signal);

@@ -33,8 +33,8 @@ struct Ledger {
     std::uint64_t paths = 0, absorbed_paths = 0, escaped_paths = 0, dropped_paths = 0;
 };
 
-// Says, once, what a user should not overlook: light created beyond a hundredth of what was emitted, or an account that
-// does not close to 1e-4.
+// Says, once, what a user should not overlook: light created or cut off beyond a hundredth of what was emitted, or an
+// account that does not close to 1e-4.
 void warn_about(const Ledger& ledger);
 
 // Sums over all passes of a render.

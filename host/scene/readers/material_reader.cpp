@@ -21,6 +21,7 @@ Medium read_medium(const std::string& name, const JsonCursor& place, SpectrumRea
     medium.sigma_a = spectra.read(where, "sigma_a_per_mm", Outside::hold).scaled(where.number("scale_sigma_a"));
     medium.eta = where.number("eta");
     medium.dipole_eta = where.number("dipole_eta");
+    medium.limited_keys = where.limited_keys();
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
         if (sigma_t_range.contains(sigma_t)) continue;
@@ -37,6 +38,7 @@ Fluorophore read_fluorophore(const std::string& name, const JsonCursor& place, S
     fluorophore.excitation = spectra.read(where, "excitation", Outside::zero);
     fluorophore.emission = spectra.read(where, "emission", Outside::zero);
     fluorophore.conversion = where.number("conversion_per_nm");
+    fluorophore.limited_keys = where.limited_keys();
     const double emission_sum = fluorophore.emission.sum_1nm();
     if (!(emission_sum > 0.0)) {
         where.at("emission")
@@ -152,6 +154,7 @@ std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader
         else
             where.fail_unread();
         material.name = name;
+        material.limited_keys = where.limited_keys();
         result.push_back(std::move(material));
     }
     return result;

@@ -46,6 +46,7 @@ Scene parse_scene(std::string_view text, const std::string& path, const FlagValu
     scene.materials = read_materials(root.at("materials"), spectra, scene);
     if (const auto shapes = root.find("shapes")) read_shapes(*shapes, folder, scene);
     read_lights(root.at("lights"), spectra, scene);
+    scene.unused_spectra = spectra.unused();
     if (scene.shapes.empty()) root.fail("nothing to see: no shapes, and no light with a surface");
     return scene;
 }

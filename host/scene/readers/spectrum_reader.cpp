@@ -58,6 +58,13 @@ void SpectrumReader::define(const JsonCursor& spectra) {
     for (const auto& [name, value] : spectra.named_members()) named_[name] = read_object(value);
 }
 
+std::vector<std::string> SpectrumReader::unused() const {
+    std::vector<std::string> names;
+    for (const auto& entry : named_)
+        if (used_.count(entry.first) == 0) names.push_back(entry.first);
+    return names;
+}
+
 Spectrum SpectrumReader::read(const ObjectReader& object, const char* key, Outside outside) {
     return read(object.at(key), outside, object.maximum(key));
 }
@@ -74,6 +81,7 @@ Spectrum SpectrumReader::read(const JsonCursor& where, Outside outside, double m
             for (const auto& entry : named_) names.push_back(entry.first);
             where.fail_undefined("spectra", names);
         }
+        used_.insert(where.text());
         definition = found->second;
     } else if (where.is(JsonValue::Type::object)) {
         definition = read_object(where);

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "host/core/csv_table.hpp"
 #include "host/core/spectrum.hpp"
@@ -29,6 +31,9 @@ class SpectrumReader {
     // The same of an object's key, whose declaration has the maximum.
     Spectrum read(const ObjectReader& object, const char* key, Outside outside);
 
+    // Names that were defined and that nothing has read since.
+    std::vector<std::string> unused() const;
+
   private:
     struct Definition {
         Spectrum spectrum;
@@ -40,6 +45,7 @@ class SpectrumReader {
 
     InputFiles<CsvTable, read_csv> tables_;
     std::map<std::string, Definition> named_;
+    std::set<std::string> used_;  // of these names
 };
 
 }  // namespace stokes
