@@ -19,7 +19,7 @@
 #include "host/core/console.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
-#include "host/render/transport/transport_model.hpp"
+#include "host/render/ignored_keys.hpp"
 #include "host/scene/readers/scene_reader.hpp"
 
 namespace stokes {
@@ -67,6 +67,16 @@ void warn_of_drops(const ProbeResult& result) {
                         result.lambda_ex_nm, result.dropped));
 }
 
+// What the transport makes nothing of: keys of the material, its medium and its fluorophores, or flags.
+void warn_of_ignored(const CLI::App& command, const Scene& scene, const std::string& name, Transport transport) {
+    for (const Material& material : scene.materials)
+        if (material.name == name)
+            for (const std::string& line : ignored_keys(scene, material, transport)) warn(line);
+    if (transport != Transport::paper) return;
+    for (const char* flag : {"--fresnel", "--quantum-yield"})
+        if (command.count(flag)) warn(fmt::format("transport \"{}\" ignores {}", word_of(transport), flag));
+}
+
 std::vector<ProbeResult> sweep(HalfSpaceProbe& probe, bool quiet) {
     std::vector<ProbeResult> results;
     const std::vector<int>& grid = probe.grid_nm();
@@ -95,8 +105,7 @@ void run_probe(const CLI::App& command, const ProbeOptions& options) {
     check_keeps_inputs(outputs);
     read_settings(options.render, scene);
     const ProbeSettings settings = settings_of(command, options, scene.render);
-    if (material.fresnel && !transport_model(settings.transport).has_fresnel())
-        warn(fmt::format("the model {} leaves out Fresnel reflection", word_of(settings.transport)));
+    warn_of_ignored(command, scene, options.material, settings.transport);
     const Device device = open_device(options.device);
     HalfSpaceProbe probe(device, material, settings);
     const ProbeResult result = probe.measure(options.lambda_nm);

@@ -15,6 +15,7 @@
 #include "host/core/signals.hpp"
 #include "host/render/assumptions.hpp"
 #include "host/render/conflicts.hpp"
+#include "host/render/ignored_keys.hpp"
 #include "host/render/renderer.hpp"
 #include "host/render/stats.hpp"
 #include "host/render/translucent_bodies.hpp"
@@ -96,6 +97,9 @@ void render(const RenderOptions& options) {
     const std::unique_ptr<ErrorCurve> curve = make_curve(options, scene.film);
     for (const Transport transport : transports_of(scene))
         for (const std::string& line : transport_model(transport).remarks(scene)) warn(line);
+    for (const std::string& line : ignored_keys(scene)) warn(line);
+    if (const std::string line = unused_objects(scene); !line.empty() && !options.quiet)
+        tell("stokes: note: " + line + "\n");
     for (const std::string& line : failed_assumptions(scene)) warn(line);
     check_keeps_inputs(outputs);
     Device device = open_device_for(options);

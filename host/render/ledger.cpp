@@ -34,6 +34,11 @@ void warn_about(const Ledger& ledger) {
                         "faces look inward, "
                         "bodies pass through one another, or it is seen through an opening",
                         behind));
+    if (power.dropped > 0.01 * power.emitted)
+        warn(fmt::format(
+            "{:.3g} times the emitted light was cut off, where paths were too long or found no surface to leave "
+            "through: the picture is too dark",
+            power.dropped / power.emitted));
     for (const double imbalance : {power.imbalance(), ledger.photons.imbalance()})
         if (!(std::abs(imbalance) < 1e-4)) {
             warn(fmt::format("the account of the light does not close: imbalance {:.2g}", imbalance));

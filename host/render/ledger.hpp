@@ -34,8 +34,8 @@ struct Ledger {
     std::uint64_t paths_behind = 0;  // of the absorbed ones: by the back of a translucent surface
 };
 
-// Says, once, what a user should not overlook: light created beyond a hundredth of what was emitted, an account that
-// does not close to 1e-4, or photons that met translucent surfaces from behind.
+// Says, once, what a user should not overlook: light created or cut off beyond a hundredth of what was emitted, an
+// account that does not close to 1e-4, or photons that met translucent surfaces from behind.
 void warn_about(const Ledger& ledger);
 
 // Sums over all passes of a render.

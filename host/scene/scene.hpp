@@ -15,6 +15,7 @@
 
 #include "host/core/spectrum.hpp"
 #include "host/scene/readers/picture.hpp"
+#include "host/scene/settings/limited_key.hpp"
 #include "host/scene/settings/render_settings.hpp"
 
 namespace stokes {
@@ -46,6 +47,7 @@ struct Medium {
     Spectrum sigma_a;
     double eta = 1.0;         // refractive index
     double dipole_eta = 1.0;  // refractive index in the dipole's A; 1 where the Fresnel factor is taken as 1
+    std::vector<LimitedKey> limited_keys = {};
 };
 
 // What becomes of an emission of which Stokes' law cuts off what lies at the exciting wavelength and below: what is
@@ -62,6 +64,7 @@ struct Fluorophore {
     double conversion = 2.0e-2;  // paper: eta of eq. 1 [1/nm]
     double quantum_yield = 1.0;  // conserving, walk: photons emitted for each taken up, in [0, 1]
     std::optional<StokesRule> stokes_rule;  // none: as the transport has it
+    std::vector<LimitedKey> limited_keys = {};
 };
 
 struct BlackMaterial {};
@@ -93,7 +96,8 @@ struct TranslucentMaterial {
 
 struct Material {
     std::string name;
-    std::variant<BlackMaterial, DiffuseMaterial, TranslucentMaterial> kind;
+    std::variant<BlackMaterial, DiffuseMaterial, TranslucentMaterial> kind = {};
+    std::vector<LimitedKey> limited_keys = {};
 };
 
 inline const DiffuseMaterial* as_diffuse(const Material& material) {
@@ -172,6 +176,7 @@ struct Scene {
     std::vector<Shape> shapes;
     int body_count = 0;
     std::map<int, Transport> body_transports;  // of bodies whose light travels otherwise than the render says
+    std::vector<std::string> unused_spectra;   // names that the file defines and nothing there uses
 };
 
 }  // namespace stokes

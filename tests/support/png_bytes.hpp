@@ -17,6 +17,7 @@ struct PngKind {
     int interlace = PNG_INTERLACE_NONE;
     std::vector<png_color> palette = {};
     std::vector<png_byte> palette_alpha = {};
+    double gamma = 0.0;  // of its gAMA; 0: none
 };
 
 // rows: each row's bytes as PNG packs them, high byte first.
@@ -37,6 +38,7 @@ inline std::string png_bytes(int width, const std::vector<std::string>& rows, co
     if (!kind.palette.empty()) png_set_PLTE(png, info, kind.palette.data(), static_cast<int>(kind.palette.size()));
     if (!kind.palette_alpha.empty())
         png_set_tRNS(png, info, kind.palette_alpha.data(), static_cast<int>(kind.palette_alpha.size()), nullptr);
+    if (kind.gamma > 0.0) png_set_gAMA(png, info, kind.gamma);
     png_write_info(png, info);
     std::vector<png_bytep> pointers;
     for (const std::string& row : rows) pointers.push_back(reinterpret_cast<png_bytep>(const_cast<char*>(row.data())));

@@ -25,7 +25,7 @@ class PaperModel : public TransportModel {
         return dye.conversion * dye.emission.at(em_nm);
     }
     bool reaches_any_distance() const override { return false; }
-    // Fluorophores that give off more than they take up, and surfaces whose Fresnel reflection is left out.
+    // Fluorophores that give off more than they take up.
     std::vector<std::string> remarks(const Scene& scene) const override {
         std::vector<std::string> lines;
         for (const Fluorophore& dye : scene.fluorophores) {
@@ -36,16 +36,6 @@ class PaperModel : public TransportModel {
                     "sum of its emission)",
                     scene.file, dye.name, gain));
         }
-        std::string names;
-        for (const MaterialUse& use : material_uses(scene)) {
-            const Material& material = scene.materials[static_cast<std::size_t>(use.material)];
-            const TranslucentMaterial* translucent = as_translucent(material);
-            if (use.transport == Transport::paper && translucent != nullptr && translucent->fresnel)
-                names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
-        }
-        if (!names.empty())
-            lines.push_back(fmt::format("{}: materials: transport \"paper\" leaves out the Fresnel reflection of {}",
-                                        scene.file, names));
         return lines;
     }
     std::unique_ptr<SubsurfaceTransport> make(const Device& device, const Scene& scene,

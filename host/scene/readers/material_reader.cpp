@@ -22,6 +22,7 @@ Medium read_medium(const std::string& name, const JsonCursor& place, SpectrumRea
     medium.sigma_a = spectra.read(where, "sigma_a_per_mm", Outside::hold).scaled(where.number("scale_sigma_a"));
     medium.eta = where.number("eta");
     medium.dipole_eta = where.number("dipole_eta");
+    medium.limited_keys = where.limited_keys();
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
         if (sigma_t_range.contains(sigma_t)) continue;
@@ -48,6 +49,7 @@ Fluorophore read_fluorophore(const std::string& name, const JsonCursor& place, S
         warn(where.at("excitation").at_place(doubt));
     fluorophore.emission = read_emission(where, spectra);
     fluorophore.conversion = where.number("conversion_per_nm");
+    fluorophore.limited_keys = where.limited_keys();
     if (const auto rule = where.find("stokes_rule")) fluorophore.stokes_rule = rule->word<StokesRule>();
     fluorophore.quantum_yield = where.has("quantum_yield")
                                     ? where.number("quantum_yield")
@@ -160,6 +162,7 @@ std::vector<Material> read_materials(const JsonCursor& materials, SpectrumReader
         else
             where.fail_unread();
         material.name = name;
+        material.limited_keys = where.limited_keys();
         result.push_back(std::move(material));
     }
     return result;

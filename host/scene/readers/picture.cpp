@@ -4,12 +4,14 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csetjmp>
 #include <cstdint>
 #include <cstring>
 #include <new>
 
 #include "host/core/error.hpp"
+#include "host/core/log.hpp"
 #include "host/core/srgb.hpp"
 #include "host/core/text_input.hpp"
 
@@ -17,6 +19,9 @@ namespace stokes {
 namespace {
 
 constexpr std::size_t most_chunk_bytes = std::size_t{8} << 20;
+
+// What gAMA holds in files of sRGB, and how far from it another value may be that means the same.
+constexpr double srgb_file_gamma = 1.0 / 2.2, same_gamma = 0.05;
 
 // libpng reports errors by longjmp: what must be destroyed lives here, outside the frames it skips.
 struct Decoding {
@@ -26,6 +31,7 @@ struct Decoding {
     std::vector<png_byte> samples;  // rows from the top down; 16-bit samples in the order of PNG, high byte first
     std::vector<png_bytep> rows;
     bool out_of_memory = false;
+    double file_gamma = srgb_file_gamma;  // exponent of its samples over light, where it says that and nothing better
 };
 
 void take(png_structp png, png_bytep data, std::size_t count) {
@@ -71,6 +77,8 @@ bool decode(Decoding& decoding) {
     png_set_user_limits(png, largest_picture, largest_picture);
     png_set_chunk_malloc_max(png, most_chunk_bytes);
     png_read_info(png, info);
+    if (png_get_valid(png, info, PNG_INFO_sRGB) == 0 && png_get_valid(png, info, PNG_INFO_iCCP) == 0)
+        png_get_gAMA(png, info, &decoding.file_gamma);
     png_set_expand(png);
     png_set_interlace_handling(png);
     png_read_update_info(png, info);
@@ -121,6 +129,9 @@ Picture parse_png(std::string_view bytes, const std::string& file) {
         if (decoding.out_of_memory) throw std::bad_alloc();
         throw InputError(fmt::format("{}: not a sound PNG file: {}", file, printable(decoding.error)));
     }
+    if (std::abs(decoding.file_gamma - srgb_file_gamma) > same_gamma)
+        warn(fmt::format("{}: its gamma (gAMA {:g}) is not applied: the picture is taken as sRGB", file,
+                         decoding.file_gamma));
     const std::vector<float> linear = srgb_curve(decoding.bit_depth);
     const auto channels = static_cast<std::size_t>(decoding.channels);
     const bool colour = channels >= 3, has_alpha = channels % 2 == 0;

@@ -50,6 +50,7 @@ Scene parse_scene(std::string_view text, const std::string& path, const FlagValu
     read_lights(root.at("lights"), spectra, scene, placement);
     placement.settle(root, scene);
     read_emitter_spectra(root.at("lights"), spectra, scene);
+    scene.unused_spectra = spectra.unused();
     if (scene.shapes.empty()) root.fail("nothing to see: no shapes, and no light with a surface");
     return scene;
 }

@@ -66,6 +66,13 @@ void SpectrumReader::define(const JsonCursor& spectra) {
     for (const auto& [name, value] : spectra.named_members()) named_[name] = read_object(value);
 }
 
+std::vector<std::string> SpectrumReader::unused() const {
+    std::vector<std::string> names;
+    for (const auto& entry : named_)
+        if (used_.count(entry.first) == 0) names.push_back(entry.first);
+    return names;
+}
+
 Spectrum SpectrumReader::read(const ObjectReader& object, const char* key, Outside outside) {
     return read(object.at(key), outside, object.maximum(key));
 }
@@ -99,7 +106,10 @@ SpectrumReader::Definition SpectrumReader::definition_at(const JsonCursor& where
     if (!where.is(JsonValue::Type::string))
         where.fail_expected("a spectrum (a number, a name in spectra, or an object)");
     const auto found = named_.find(where.text());
-    if (found != named_.end()) return found->second;
+    if (found != named_.end()) {
+        used_.insert(where.text());
+        return found->second;
+    }
     std::vector<std::string> names;
     for (const auto& entry : named_) names.push_back(entry.first);
     where.fail_undefined("spectra", names);

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "host/core/csv_spectrum.hpp"
 #include "host/scene/readers/input_files.hpp"
@@ -33,6 +35,9 @@ class SpectrumReader {
     // The same times what brings its largest sample from 300 to 830 nm to 1: of a relative spectrum.
     Spectrum read_relative(const ObjectReader& object, const char* key);
 
+    // Names that were defined and that nothing has read since.
+    std::vector<std::string> unused() const;
+
   private:
     struct Definition {
         Spectrum spectrum;
@@ -54,6 +59,7 @@ class SpectrumReader {
 
     InputFiles<CsvTable, read_csv> tables_;
     std::map<std::string, Definition> named_;
+    std::set<std::string> used_;  // of these names
 };
 
 }  // namespace stokes

@@ -87,9 +87,12 @@ Objects materials() {
            "Several fluorophores, each once, in place of fluorophore and fluorescent_fraction. The fractions add up to "
            "1 at most."},
           {"subsurface", YesNo{}, true, "false: fluorescence of the surface alone, which needs a fluorophore."},
-          {"fresnel", YesNo{}, false,
+          {"fresnel",
+           YesNo{},
+           false,
            "true: the surface is smooth and reflects, outside and within, by the medium's eta; only with subsurface "
-           "light. Transport paper ignores it."}},
+           "light.",
+           {{Transport::conserving, Transport::walk}}}},
          {},
          R"({
              "allOf": [{"if": {"properties": {"subsurface": {"const": false}}, "required": ["subsurface"]},
@@ -129,9 +132,12 @@ Objects material_objects() {
                         {"eta", NumberRange{1.0, 5.0}, 1.0,
                          "Refractive index, for the direction of refracted light and for Fresnel reflection, which "
                          "needs 4 or less."},
-                        {"dipole_eta", NumberRange{1.0, largest_dipole_eta}, 1.0,
+                        {"dipole_eta",
+                         NumberRange{1.0, largest_dipole_eta},
+                         1.0,
                          "Refractive index in the boundary condition of multiple scattering; 1: no internal "
-                         "reflection."}}});
+                         "reflection.",
+                         {{Transport::paper}}}}});
     objects.push_back(
         {"fluorophore",
          "A substance that takes up light and gives it off at longer wavelengths.",
@@ -140,12 +146,17 @@ Objects material_objects() {
           {"emission", any_spectrum, required,
            "Relative, of any scale; not zero everywhere. In photons per nm for transport conserving and "
            "walk, in energy per nm for paper."},
-          {"conversion_per_nm", unit_range, Fluorophore().conversion,
-           "Emission at the peak, the largest value of its table, per exciting flux, for transport paper."},
-          {"quantum_yield", unit_range, optional,
-           "Photons emitted for each one taken up, for transport conserving and walk. By default "
-           "conversion_per_nm times the sum over whole nanometres of the emission over its peak, 1 at "
-           "most."},
+          {"conversion_per_nm",
+           unit_range,
+           Fluorophore().conversion,
+           "Emission at the peak, the largest value of its table, per exciting flux.",
+           {{Transport::paper}, "quantum_yield"}},
+          {"quantum_yield",
+           unit_range,
+           optional,
+           "Photons emitted for each one taken up. By default conversion_per_nm times the sum over whole nanometres of "
+           "the emission over its peak, 1 at most.",
+           {{Transport::conserving, Transport::walk}}},
           {"stokes_rule", OneWord{words_of<StokesRule>}, optional,
            "Light is emitted above the exciting wavelength only. keep_yield brings what is left of the "
            "emission back to the whole; truncate does not, so that less is emitted where excitation and "

@@ -1,5 +1,7 @@
 #include "host/scene/settings/object.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -77,6 +79,27 @@ const Key& ObjectReader::key_of(const std::string& key) const {
 double ObjectReader::number(const std::string& key) const {
     const auto value = find(key);
     return value ? value->number(key_of<NumberRange>(key)) : std::get<double>(key_of(key).fallback);
+}
+
+std::string Key::sentence() const {
+    std::string words;
+    for (const Transport transport : traits.transports)
+        words += fmt::format("{}{}", words.empty() ? "" : " and ", word_of(transport));
+    return words.empty() ? help : fmt::format("{} For transport {}.", help, words);
+}
+
+std::vector<LimitedKey> ObjectReader::limited_keys() const {
+    std::vector<LimitedKey> limited;
+    for (const Key& key : object_->keys) {
+        if (key.traits.transports.empty() || !has(key.name)) continue;
+        if (!key.traits.unless.empty() && !has(key.traits.unless)) continue;
+        const auto* number_default = std::get_if<double>(&key.fallback);
+        if (number_default && number(key.name) == *number_default) continue;
+        const auto* yes_default = std::get_if<bool>(&key.fallback);
+        if (yes_default && boolean(key.name) == *yes_default) continue;
+        limited.push_back({key.name, key.traits.transports});
+    }
+    return limited;
 }
 
 void ObjectReader::fail_unread() const { throw RunError(kind() + " is declared, but nothing reads it"); }

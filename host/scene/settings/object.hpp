@@ -7,17 +7,28 @@
 
 #include "host/core/json_cursor.hpp"
 #include "host/scene/settings/domain.hpp"
+#include "host/scene/settings/limited_key.hpp"
 
 namespace stokes {
 
 enum class Presence { required, optional };
 inline constexpr Presence required = Presence::required, optional = Presence::optional;
 
+// What sets a key apart from most.
+struct KeyTraits {
+    std::vector<Transport> transports = {};  // the only ones in which it has an effect; none: all
+    std::string unless = {};                 // where this other key is missing it has an effect in all transports
+};
+
 struct Key {
     std::string name;
     Domain domain;
     std::variant<Presence, bool, int, double, std::string> fallback;  // whether it must be there, or its default
-    std::string help;
+    std::string help;                                                 // without its transports
+    KeyTraits traits = {};
+
+    // The help with its transports, as the schema has it.
+    std::string sentence() const;
 };
 
 // An object, or a choice of objects.
@@ -53,6 +64,8 @@ class ObjectReader : public JsonCursor {
     glm::dvec3 direction(const std::string& key) const { return at(key).direction(); }
     // Of the keys of which exactly one may be there, that one.
     std::string exactly_one() const { return one_of(object_->exactly_one); }
+    // Keys that are there, with another value than their default, and have an effect in some transports only.
+    std::vector<LimitedKey> limited_keys() const;
     // Of a key whose values are spectra.
     double maximum(const std::string& key) const { return key_of<SpectrumUpTo>(key).maximum; }
 

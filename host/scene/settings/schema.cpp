@@ -41,7 +41,7 @@ constexpr const char* special_values = R"({
 })";
 
 Json key_schema(const Key& key) {
-    Json schema = {{"description", key.help}};
+    Json schema = {{"description", key.sentence()}};
     schema.update(schema_of(key.domain));
     std::visit(
         [&](const auto& fallback) {
