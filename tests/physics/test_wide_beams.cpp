@@ -16,7 +16,7 @@ using namespace stokes;
 namespace {
 
 constexpr std::uint32_t passes = 4;
-constexpr std::size_t seeds = 8;
+constexpr std::size_t seeds = 6;
 
 // Straight down from y = 200 mm, with the irradiance of flux over 1 mm^2; half_mm: radius, or half of a side.
 template <class Kind>
