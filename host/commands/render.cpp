@@ -123,7 +123,7 @@ void render(const RenderOptions& options) {
     stats.processor_s = processor_s;
     stats.set_up_s = set_up_s;
     if (!options.quiet) say_what_was_dropped(stats);
-    warn_about(stats.ledger);
+    warn_about(stats.ledger, renderer->emitted_part());
     for (const std::string& line : unmet_body_lines(scene, renderer->unmet_bodies())) warn(line);
     write_results(options.files, scene, film, stats, curve.get(), options.quiet);
 }

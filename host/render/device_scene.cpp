@@ -28,16 +28,6 @@ std::vector<std::uint32_t> body_kinds(const Scene& scene) {
     return kinds;
 }
 
-// The probabilities of lights where each has photons for what it emits within its bounds.
-std::vector<double> within(const std::vector<EmissionBounds>& bounds, std::vector<double> probability) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < bounds.size(); ++i) sum += probability[i] * bounds[i].part;
-    const bool all = std::all_of(bounds.begin(), bounds.end(), [](const EmissionBounds& b) { return b.part == 1.0; });
-    if (!all)
-        for (std::size_t i = 0; i < bounds.size(); ++i) probability[i] *= bounds[i].part / sum;
-    return probability;
-}
-
 }  // namespace
 
 std::vector<Triangle> scene_triangles(const Scene& scene) {
@@ -72,7 +62,8 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     textures = upload_textures(device, scene);
 
     const std::vector<EmissionBounds> bounds = emission_bounds(scene);
-    light_probability = within(bounds, light_probabilities(scene));
+    light_probability = light_probabilities(scene);
+    set_emitted_part(bounds);
     const LightTables tables_of_lights = light_tables(scene, light_probability, bounds, all, first_triangle);
     lights = Buffer<LightRecord>(device, "lights", tables_of_lights.records);
     light_areas = Buffer<float>(device, "light areas", tables_of_lights.areas);
@@ -86,6 +77,15 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     maximum_mm = glm::vec3(extent.maximum);
     const glm::dvec3 farthest = glm::max(glm::abs(extent.minimum), glm::abs(extent.maximum));
     offset_mm = static_cast<float>(offset_share * std::max({farthest.x, farthest.y, farthest.z}));
+}
+
+// Each light has photons for what it emits within its bounds.
+void DeviceScene::set_emitted_part(const std::vector<EmissionBounds>& bounds) {
+    const auto whole = [](const EmissionBounds& of) { return of.part == 1.0; };
+    if (std::all_of(bounds.begin(), bounds.end(), whole)) return;
+    emitted_part = 0.0;
+    for (std::size_t i = 0; i < bounds.size(); ++i) emitted_part += light_probability[i] * bounds[i].part;
+    for (std::size_t i = 0; i < bounds.size(); ++i) light_probability[i] *= bounds[i].part / emitted_part;
 }
 
 Arguments DeviceScene::arguments() const {

@@ -6,6 +6,7 @@
 
 #include "host/device/kernel.hpp"
 #include "host/render/device_textures.hpp"
+#include "host/render/emission_bounds.hpp"
 #include "host/render/ray_casting.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/light.h"
@@ -30,10 +31,14 @@ struct DeviceScene {
     Buffer<float> light_areas;                     // cumulative area of the triangles of each surface light [mm^2]
     bool has_mirrors = false;                      // some material mirrors camera rays
     std::vector<double> light_probability;         // per light
+    double emitted_part = 1.0;                     // of the lights' power, what starts within their EmissionBounds
     std::vector<double> light_spread;              // per light, LightTables::spread
     float offset_mm = 0.0f;                        // rays start this far off a surface
     glm::vec3 minimum_mm{0.0f}, maximum_mm{0.0f};  // bounding box
     std::uint32_t light_count = 0;
+
+  private:
+    void set_emitted_part(const std::vector<EmissionBounds>& bounds);
 };
 
 // All triangles of the scene in the order of its shapes; degenerate ones are kept, they are never hit.

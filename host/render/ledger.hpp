@@ -35,7 +35,7 @@ struct Ledger {
 
 // Says, once, what a user should not overlook: light created or cut off beyond a hundredth of what was emitted, or an
 // account that does not close to 1e-4.
-void warn_about(const Ledger& ledger);
+void warn_about(const Ledger& ledger, double emitted_part = 1.0);
 
 // Sums over all passes of a render.
 class LedgerBook {
