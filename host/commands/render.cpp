@@ -122,7 +122,7 @@ void render(const RenderOptions& options) {
     stats.set_up_s = set_up_s;
     const auto words = [&] {
         if (!options.quiet) say_what_was_dropped(stats);
-        warn_about(stats.ledger);
+        warn_about(stats.ledger, renderer->emitted_part());
         for (const std::string& line : unmet_body_lines(scene, renderer->unmet_bodies())) warn(line);
         warn_about(film);
     };

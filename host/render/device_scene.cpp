@@ -54,16 +54,6 @@ std::uint32_t shape_flags(const Scene& scene, const Shape& shape, const Contacts
            (contacts.solid[static_cast<std::size_t>(shape.body)] ? STOKES_TRIANGLE_SOLID : 0u);
 }
 
-// The probabilities of lights where each has photons for what it emits within its bounds.
-std::vector<double> within(const std::vector<EmissionBounds>& bounds, std::vector<double> probability) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < bounds.size(); ++i) sum += probability[i] * bounds[i].part;
-    const bool all = std::all_of(bounds.begin(), bounds.end(), [](const EmissionBounds& b) { return b.part == 1.0; });
-    if (!all)
-        for (std::size_t i = 0; i < bounds.size(); ++i) probability[i] *= bounds[i].part / sum;
-    return probability;
-}
-
 }  // namespace
 
 std::vector<Triangle> scene_triangles(const Scene& scene, const Contacts& contacts) {
@@ -111,7 +101,8 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     textures = upload_textures(device, scene);
 
     const std::vector<EmissionBounds> bounds = emission_bounds(scene);
-    light_probability = within(bounds, light_probabilities(scene));
+    light_probability = light_probabilities(scene);
+    set_emitted_part(bounds);
     LightTables tables_of_lights = light_tables(scene, light_probability, bounds, all, first_triangle);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         tables_of_lights.records[i].inside = walked_container(scene, container_of_light(scene, scene.lights[i]));
@@ -126,6 +117,15 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     minimum_mm = glm::vec3(extent.minimum);
     maximum_mm = glm::vec3(extent.maximum);
     offset_mm = static_cast<float>(offset);
+}
+
+// Each light has photons for what it emits within its bounds.
+void DeviceScene::set_emitted_part(const std::vector<EmissionBounds>& bounds) {
+    const auto whole = [](const EmissionBounds& of) { return of.part == 1.0; };
+    if (std::all_of(bounds.begin(), bounds.end(), whole)) return;
+    emitted_part = 0.0;
+    for (std::size_t i = 0; i < bounds.size(); ++i) emitted_part += light_probability[i] * bounds[i].part;
+    for (std::size_t i = 0; i < bounds.size(); ++i) light_probability[i] *= bounds[i].part / emitted_part;
 }
 
 Arguments DeviceScene::arguments() const {

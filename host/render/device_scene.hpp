@@ -6,6 +6,7 @@
 
 #include "host/device/kernel.hpp"
 #include "host/render/device_textures.hpp"
+#include "host/render/emission_bounds.hpp"
 #include "host/render/ray_casting.hpp"
 #include "host/scene/mesh/contacts.hpp"
 #include "host/scene/scene.hpp"
@@ -33,10 +34,14 @@ struct DeviceScene {
     bool has_contacts = false;                     // some bodies touch
     bool has_contested = false;                    // some triangles lie in one place
     std::vector<double> light_probability;         // per light
+    double emitted_part = 1.0;                     // of the lights' power, what starts within their EmissionBounds
     std::vector<double> light_spread;              // per light, LightTables::spread
     float offset_mm = 0.0f;                        // rays start this far off a surface
     glm::vec3 minimum_mm{0.0f}, maximum_mm{0.0f};  // bounding box
     std::uint32_t light_count = 0;
+
+  private:
+    void set_emitted_part(const std::vector<EmissionBounds>& bounds);
 };
 
 // How far rays start off a surface [mm].

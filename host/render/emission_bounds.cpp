@@ -106,23 +106,15 @@ EmissionBounds beam_bounds(const Scene& scene, const Beam& beam, double section_
     return bounds;
 }
 
-TargetBall ball_around(const Scene& scene, int own_shape) {
-    std::vector<const Mesh*> targets;
-    for (std::size_t s = 0; s < scene.shapes.size(); ++s)
-        if (is_target(scene, s, own_shape)) targets.push_back(&scene.shapes[s].mesh);
-    TargetBall ball;
-    if (targets.empty()) return ball;
+// bounds: of each shape, so that many lamps do not go through all vertices.
+TargetBall ball_around(const Scene& scene, const std::vector<Bounds>& bounds, int own_shape) {
     glm::dvec3 low(infinite), high(-infinite);
-    for (const Mesh* mesh : targets) {
-        const Bounds bounds = mesh_bounds(*mesh);
-        low = glm::min(low, bounds.low_mm), high = glm::max(high, bounds.high_mm);
+    for (std::size_t s = 0; s < scene.shapes.size(); ++s) {
+        if (!is_target(scene, s, own_shape)) continue;
+        low = glm::min(low, bounds[s].low_mm), high = glm::max(high, bounds[s].high_mm);
     }
-    ball.centre_mm = 0.5 * (low + high);
-    for (const Mesh* mesh : targets)
-        for (const glm::vec3& p : mesh->positions_mm)
-            ball.radius_mm = std::max(ball.radius_mm, glm::distance(glm::dvec3(p), ball.centre_mm));
-    ball.radius_mm *= 1.0 + margin;
-    return ball;
+    if (!(low.x <= high.x)) return {};
+    return {0.5 * (low + high), (1.0 + margin) * 0.5 * glm::distance(low, high)};
 }
 
 // Places on a triangle at which its cone is judged, of equal areas: the middles of 16 parts, by rows.
@@ -158,8 +150,8 @@ double mean_part(const TargetBall& ball, const Mesh& mesh, bool with_cosine) {
     return area > 0.0 ? sum / area : 1.0;
 }
 
-EmissionBounds surface_bounds(const Scene& scene, const SurfaceLight& light) {
-    const TargetBall ball = ball_around(scene, light.shape);
+EmissionBounds surface_bounds(const Scene& scene, const std::vector<Bounds>& of_shapes, const SurfaceLight& light) {
+    const TargetBall ball = ball_around(scene, of_shapes, light.shape);
     if (!(ball.radius_mm > 0.0)) return {};
     const Mesh& mesh = scene.shapes[static_cast<std::size_t>(light.shape)].mesh;
     const double part = mean_part(ball, mesh, false);
@@ -174,10 +166,12 @@ EmissionBounds surface_bounds(const Scene& scene, const SurfaceLight& light) {
 
 std::vector<EmissionBounds> emission_bounds(const Scene& scene) {
     std::vector<EmissionBounds> bounds;
+    std::vector<Bounds> of_shapes;
+    for (const Shape& shape : scene.shapes) of_shapes.push_back(mesh_bounds(shape.mesh));
     const auto area = [](const Beam& beam) { return glm::length(beam.half_u_mm) * glm::length(beam.half_v_mm); };
     for (const Light& light : scene.lights)
         bounds.push_back(std::visit(
-            Overloaded{[&](const SurfaceLight& of) { return surface_bounds(scene, of); },
+            Overloaded{[&](const SurfaceLight& of) { return surface_bounds(scene, of_shapes, of); },
                        [&](const DiskBeam& beam) { return beam_bounds(scene, beam, M_PI * area(beam)); },
                        [&](const RectangleBeam& beam) { return beam_bounds(scene, beam, 4.0 * area(beam)); }},
             light.kind));

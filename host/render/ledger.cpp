@@ -19,26 +19,26 @@ double Balance::imbalance() const {
     return came > 0.0 ? (came - absorbed - stokes_loss - escaped - dropped - roulette) / came : 0.0;
 }
 
-void warn_about(const Ledger& ledger) {
+void warn_about(const Ledger& ledger, double emitted_part) {
     const Balance& power = ledger.power;
-    if (power.created > 0.01 * power.emitted)
+    const double started = emitted_part * power.emitted;
+    if (power.created > 0.01 * started)
         warn(fmt::format(
             "{:.3g} times the emitted light was created, by power tables above one or by fluorophores that emit "
             "more than they take up",
-            power.created / power.emitted));
+            power.created / started));
     const double behind =
         static_cast<double>(ledger.paths_behind) / static_cast<double>(std::max<std::uint64_t>(ledger.paths, 1));
     if (behind > most_behind)
-        warn(
-            fmt::format("{:.2g} of the photons met a translucent surface from behind and were absorbed there: its "
-                        "faces look inward, "
-                        "bodies pass through one another, or it is seen through an opening",
-                        behind));
-    if (power.dropped > 0.01 * power.emitted)
+        warn(fmt::format(
+            "{:.2g} of the photons met a translucent surface from behind and were absorbed there: its faces look "
+            "inward, bodies pass through one another, or it is seen through an opening",
+            behind));
+    if (power.dropped > 0.01 * started)
         warn(fmt::format(
             "{:.3g} times the emitted light was cut off, where paths were too long or found no surface to leave "
             "through: the picture is too dark",
-            power.dropped / power.emitted));
+            power.dropped / started));
     for (const double imbalance : {power.imbalance(), ledger.photons.imbalance()})
         if (!(std::abs(imbalance) < 1e-4)) {
             warn(fmt::format("the account of the light does not close: imbalance {:.2g}", imbalance));

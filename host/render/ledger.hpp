@@ -35,8 +35,9 @@ struct Ledger {
 };
 
 // Says, once, what a user should not overlook: light created or cut off beyond a hundredth of what was emitted, an
-// account that does not close to 1e-4, or photons that met translucent surfaces from behind.
-void warn_about(const Ledger& ledger);
+// account that does not close to 1e-4, or photons that met translucent surfaces from behind. emitted_part: of the
+// emitted light, what started where it could meet something.
+void warn_about(const Ledger& ledger, double emitted_part = 1.0);
 
 // Sums over all passes of a render.
 class LedgerBook {

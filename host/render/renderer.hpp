@@ -37,6 +37,8 @@ class Renderer {
     const LedgerBook& book() const { return book_; }
     // Translucent bodies that no photon of these passes has met, by index.
     std::vector<int> unmet_bodies() const { return photon_pass_.unmet_bodies(); }
+    // Of the power that the lights emit, what starts where it can meet something.
+    double emitted_part() const { return on_device_.emitted_part; }
     std::uint64_t camera_rays() const { return std::uint64_t{passes_} * view_.ray_count(); }
     double first_radius() const { return first_radius_mm_; }  // [mm]
     double radius_of(std::uint32_t pass) const;               // [mm]

@@ -55,7 +55,8 @@ Outcome rendered(const Json& scene, const std::string& options = "--quiet") {
     const TemporaryFolder folder;
     put_file(folder.file("s.json"), scene.dump());
     return run_stokes("render " + folder.file("s.json") + " -o " + folder.file("s.exr") +
-                      " --size 12x8 --passes 1 --photons 500 --sampling plain " + options);
+                      " --size 12x8 --passes 1 --sampling plain " + options +
+                      (options.find("--photons") == std::string::npos ? " --photons 500" : ""));
 }
 
 }  // namespace
@@ -93,6 +94,21 @@ TEST_CASE("a translucent body in the dark is named", "[render_warnings]") {
     const Outcome run = rendered(scene);
     CHECK(run.code == 0);
     CHECK_THAT(run.err, Contains("stokes: warning: no photon met the translucent body \"ball\""));
+}
+
+// A dye that gives off a hundred times what it takes up creates light. It is measured by the light that can meet the
+// scene: a beam of 30 m has 90 000 times the power of one of 100 mm.
+TEST_CASE("created light is said of wide beams too", "[render_warnings]") {
+    Json scene = ball();
+    scene["fluorophores"] = {{"hot", {{"excitation", 1}, {"emission", 1}, {"conversion_per_nm", 0.2}}}};
+    scene["materials"]["glow"]["fluorophore"] = "hot";
+    scene["materials"]["glow"]["fluorescent_fraction"] = 1;
+    for (const double radius_mm : {100.0, 30000.0}) {
+        scene["lights"][0]["radius_mm"] = radius_mm;
+        const Outcome run = rendered(scene, "--quiet --transport paper --photons 4000");
+        CHECK(run.code == 0);
+        CHECK_THAT(run.err, Contains("times the emitted light was created"));
+    }
 }
 
 // 1/2.2 is what programs write for sRGB.
