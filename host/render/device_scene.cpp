@@ -24,9 +24,11 @@ std::uint32_t walked_container(const Scene& scene, const Container& container) {
     return walked ? static_cast<std::uint32_t>(*container.whole) : STOKES_NONE;
 }
 
-std::vector<BodyRecord> body_records(const Scene& scene, const Contacts& contacts) {
+// Appends the contact regions of each body to regions.
+std::vector<BodyRecord> body_records(const Scene& scene, const Contacts& contacts,
+                                     std::vector<ContactRegion>& regions) {
     std::vector<BodyRecord> records(static_cast<std::size_t>(std::max(scene.body_count, 1)),
-                                    BodyRecord{0, 0, STOKES_NONE, 0});
+                                    BodyRecord{0, 0, STOKES_NONE, 0, 0, {}});
     const auto by_mesh = [&](int body) {
         return !transport_model(transport_of_body(scene, body)).takes_bodies_for_half_spaces();
     };
@@ -40,6 +42,12 @@ std::vector<BodyRecord> body_records(const Scene& scene, const Contacts& contact
         if (contacts.touches[body]) record.flags |= STOKES_BODY_TOUCHES;
         if (contacts.solid[body]) record.flags |= STOKES_BODY_SOLID;
         if (contacts.holds[body]) record.flags |= STOKES_BODY_HOLLOW;
+        record.first_region = static_cast<std::uint32_t>(regions.size());
+        record.region_count = static_cast<std::uint32_t>(contacts.regions[body].size());
+        for (const Box& box : contacts.regions[body]) {
+            const glm::vec3 low(box.low), high(box.high);
+            regions.push_back({low.x, low.y, low.z, high.x, high.y, high.z});
+        }
         if (walkable[body] == BodyKind::closed)
             record.inside = walked_container(scene, container_of_body(scene, static_cast<int>(body)));
     }
@@ -111,7 +119,10 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene) {
     light_spread = tables_of_lights.spread;
     light_count = static_cast<std::uint32_t>(scene.lights.size());
     has_mirrors = std::any_of(records.begin(), records.end(), may_mirror);
-    bodies = Buffer<BodyRecord>(device, "bodies", body_records(scene, contacts));
+    std::vector<ContactRegion> regions;
+    bodies = Buffer<BodyRecord>(device, "bodies", body_records(scene, contacts, regions));
+    if (regions.empty()) regions.emplace_back();
+    contact_regions = Buffer<ContactRegion>(device, "contact regions", regions);
 
     const SceneExtent extent = scene_extent(scene);
     minimum_mm = glm::vec3(extent.minimum);
@@ -137,7 +148,8 @@ Arguments DeviceScene::arguments() const {
         .add("light_count", light_count)
         .add("lights", lights)
         .add("light_areas", light_areas)
-        .add("bodies", bodies);
+        .add("bodies", bodies)
+        .add("contact_regions", contact_regions);
 }
 
 }  // namespace stokes

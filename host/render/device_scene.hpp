@@ -27,6 +27,7 @@ struct DeviceScene {
     Buffer<MaterialRecord> materials;
     DeviceTextures textures;
     Buffer<BodyRecord> bodies;
+    Buffer<ContactRegion> contact_regions;  // one at least
     RayScene rays;
     Buffer<LightRecord> lights;
     Buffer<float> light_areas;                     // cumulative area of the triangles of each surface light [mm^2]

@@ -25,7 +25,7 @@ constexpr double least_weight = 0.02;
 
 double uniform(std::mt19937_64& generator) { return static_cast<double>(generator() >> 11) * 0x1p-53; }
 
-struct BodyTriangle {
+struct SeedTriangle {
     glm::dvec3 corner, e1, e2, normal;
     double area_before;
 };
@@ -33,7 +33,7 @@ struct BodyTriangle {
 }  // namespace
 
 std::vector<SeedPoint> points_of_body(const Scene& scene, int body, std::size_t count) {
-    std::vector<BodyTriangle> triangles;
+    std::vector<SeedTriangle> triangles;
     double area = 0.0;
     for (const Shape& shape : scene.shapes) {
         if (shape.body != body) continue;
@@ -52,8 +52,8 @@ std::vector<SeedPoint> points_of_body(const Scene& scene, int body, std::size_t 
     for (std::size_t i = 0; i < count; ++i) {
         const double at = (static_cast<double>(i) + uniform(generator)) / static_cast<double>(count) * area;
         const auto next = std::upper_bound(triangles.begin(), triangles.end(), at,
-                                           [](double value, const BodyTriangle& t) { return value < t.area_before; });
-        const BodyTriangle& t = *(next - 1);
+                                           [](double value, const SeedTriangle& t) { return value < t.area_before; });
+        const SeedTriangle& t = *(next - 1);
         const double root = std::sqrt(uniform(generator)), v = uniform(generator);
         const glm::vec3 p(t.corner + t.e1 * (root * (1.0 - v)) + t.e2 * (root * v)), n(t.normal);
         points.push_back({{p.x, p.y, p.z, n.x, n.y, n.z}, area / static_cast<double>(count)});

@@ -34,9 +34,9 @@ PhotonPass::PhotonPass(const Device& device, const Scene& scene, const DeviceSce
     const Program emission(device, "emit_photons.cl");
     emit_ = emission.kernel("emit_photons");
     emit_stratified_ = emission.kernel("emit_stratified");
-    trace_ = on_device.rays.kernels.program(device, "trace_rays.cl").kernel("trace_closest");
-    if (on_device.has_contacts)
-        settle_ = on_device.rays.kernels.program(device, "settle_hits.cl").kernel("settle_photons");
+    const RayKernels& kernels = on_device.rays.kernels;
+    trace_ = on_device.has_contacts ? kernels.program(device, "settle_hits.cl").kernel("trace_photons")
+                                    : kernels.program(device, "trace_rays.cl").kernel("trace_closest");
     classify_ = Program(device, "classify_photons.cl").kernel("classify_photons");
     scatter_ = Program(device, "scatter_photons.cl").kernel("scatter_diffuse");
 }
@@ -99,9 +99,7 @@ void PhotonPass::emit() const {
 }
 
 void PhotonPass::trace_rays(std::uint32_t count) const {
-    const Arguments n("n", count);
-    trace_.launch(count, n, common_, paths_.list());
-    if (on_device_.has_contacts) settle_.launch(count, n, common_, paths_.list());
+    trace_.launch(count, Arguments("n", count), common_, paths_.list());
 }
 
 // Finds what happens to each photon where it landed, and lists them by that.

@@ -62,7 +62,7 @@ class PhotonPass {
     PhotonMaps maps_;
     SubsurfaceExits exits_;
     std::vector<std::unique_ptr<SubsurfaceTransport>> transports_;  // those that some body uses
-    Kernel emit_, emit_stratified_, trace_, settle_, classify_, scatter_;
+    Kernel emit_, emit_stratified_, trace_, classify_, scatter_;
     std::vector<int> translucent_bodies_, unmet_bodies_;
     Buffer<std::uint32_t> met_bodies_;  // [bodies], one at least
     Arguments common_;                  // of the scene, the pass and the paths

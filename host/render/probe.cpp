@@ -88,7 +88,7 @@ struct HalfSpaceProbe::Bench {
           photons(static_cast<std::uint32_t>((s.photons + batches - 1) / batches)),
           pass(on, scene, on_device, photons, photons),
           grids(material, settings) {
-        on_device.bodies.upload({BodyRecord{STOKES_BODY_FLAT, 0, STOKES_NONE, 0}});
+        on_device.bodies.upload({BodyRecord{STOKES_BODY_FLAT, 0, STOKES_NONE, 0, 0, {}}});
         // Far below the mean free paths, so that it matters nowhere.
         on_device.offset_mm = static_cast<float>(1e-3 * mean_free_paths(material).shortest_mm);
     }

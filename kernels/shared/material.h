@@ -36,12 +36,20 @@ STOKES_ASSERT_SIZE(ShapeRecord, 8);
 
 // Shapes that exchange light below their surfaces, and each other shape by itself. Written by the host once per scene.
 typedef struct BodyRecord {
-    unsigned int flags;     // STOKES_BODY_*
-    unsigned int material;  // index into the MaterialRecord buffer: of one of its shapes
-    unsigned int inside;    // the body of model `walk` within which it lies, or STOKES_NONE
-    unsigned int pad;
+    unsigned int flags;                       // STOKES_BODY_*
+    unsigned int material;                    // index into the MaterialRecord buffer: of one of its shapes
+    unsigned int inside;                      // the body of model `walk` within which it lies, or STOKES_NONE
+    unsigned int first_region, region_count;  // TOUCHES: of its ContactRegions
+    unsigned int pad[3];
 } BodyRecord;
-STOKES_ASSERT_SIZE(BodyRecord, 16);
+STOKES_ASSERT_SIZE(BodyRecord, 32);
+
+// A box that holds the part of a body's surface near to which another body comes. Written by the host once per scene.
+typedef struct ContactRegion {
+    float low_x, low_y, low_z;     // [mm]
+    float high_x, high_y, high_z;  // [mm]
+} ContactRegion;
+STOKES_ASSERT_SIZE(ContactRegion, 24);
 
 // Written by the host once per scene. A "row" is an index into the pass's spectra: one float16, the value at each
 // of the pass's wavelengths. Row i is the reflectance of material i. There is a record for each material of the scene,

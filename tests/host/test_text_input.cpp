@@ -47,7 +47,7 @@ TEST_CASE("an error quotes whole characters of a scene and of a table", "[text]"
     const Outcome scene = run_stokes("render " + folder.file("s.json") + " --png " + folder.file("x.png"));
     CHECK(scene.code == 2);
     CHECK_THAT(scene.err, Contains("unknown key \"" + shown + "\""));
-    put_file(folder.file("t.csv"), "lambda_nm,x\n400," + key + "\n");
+    put_file(folder.file("t.csv"), "lambda_nm,x\n400,1\n410," + key + "\n");
     const Outcome table = run_stokes("probe --sigma-s 1 --sigma-a " + folder.file("t.csv"));
     CHECK(table.code == 2);
     CHECK_THAT(table.err, Contains("\"" + shown + "\""));

@@ -73,6 +73,7 @@ const std::vector<Change> changes = {
     {"medium", "dipole_eta", "/media/wax/dipole_eta", 1.5},
     {"fluorophore", "excitation", "/fluorophores/blue/excitation", 1},
     {"fluorophore", "emission", "/fluorophores/blue/emission", 1},
+    {"fluorophore", "stokes_rule", "/fluorophores/blue/stokes_rule", "truncate"},
     {"fluorophore", "conversion_per_nm", "/fluorophores/blue/conversion_per_nm", 0.001},
     {"fluorophore", "quantum_yield", "/fluorophores/blue/quantum_yield", 0.1},
     {"material_diffuse", "reflectance", "/materials/grey/reflectance", 0.9},
@@ -151,6 +152,7 @@ const std::vector<Change> changes = {
 // Keys that are tested elsewhere, or mean the same as in another object: names and words, files, amounts of lights, and
 // the threshold of a mask, whose picture here is black and white.
 const std::set<std::string> not_here = {"type",
+                                        "wrap",
                                         "section",
                                         "name",
                                         "transform",

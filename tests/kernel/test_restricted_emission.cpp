@@ -71,6 +71,7 @@ Emitted emit(const LightRecord& light, std::uint32_t photons) {
                 Arguments("pass", pass_on_device(3, photons, offset_mm))
                     .add("photon_flux", on_device(std::vector<Flux16>{constant_flux(2.0f)}))
                     .add("rays", rays)
+                    .add("departures", open_departures(photons))
                     .add("flux", flux)
                     .add("ledgers", ledgers)
                     .add("list", Buffer<std::uint32_t>(test_device(), "list", photons)));
@@ -207,6 +208,7 @@ TEST_CASE("a photon that starts at the place of a target goes through the target
                         .add("first_photons", on_device(first))
                         .add("photon_flux", on_device(std::vector<Flux16>{constant_flux(1.0f)}))
                         .add("rays", rays)
+                        .add("departures", open_departures(count))
                         .add("flux", Buffer<Flux16>(test_device(), "flux", count))
                         .add("ledgers", Buffer<PathLedger>(test_device(), "ledgers", count))
                         .add("list", Buffer<std::uint32_t>(test_device(), "list", count))

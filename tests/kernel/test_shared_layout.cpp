@@ -63,7 +63,10 @@ using namespace stokes;
         F(LightRecord, vx) F(LightRecord, vy) F(LightRecord, vz) F(LightRecord, restricted) F(LightRecord, tx) F(LightRecord, ty) F(LightRecord, tz) F(LightRecord, target_mm) F(LightRecord, wux) F(LightRecord, wuy) F(LightRecord, wuz) F(LightRecord, part) F(LightRecord, wvx) F(LightRecord, wvy) F(LightRecord, wvz) F(LightRecord, inside) S(EmissionTarget) F(EmissionTarget, x) F(EmissionTarget, y) F(EmissionTarget, z) F(EmissionTarget, nx) F(EmissionTarget, ny) F(EmissionTarget, nz) \
     S(EmissionCell) F(EmissionCell, low) F(EmissionCell, size) F(EmissionCell, probability) F(EmissionCell, light) \
         F(EmissionCell, stride) F(EmissionCell, pad) \
-    S(BodyRecord) F(BodyRecord, flags) F(BodyRecord, material) F(BodyRecord, inside) F(BodyRecord, pad) \
+    S(BodyRecord) F(BodyRecord, flags) F(BodyRecord, material) F(BodyRecord, inside) F(BodyRecord, first_region) \
+        F(BodyRecord, region_count) F(BodyRecord, pad) \
+    S(ContactRegion) F(ContactRegion, low_x) F(ContactRegion, low_y) F(ContactRegion, low_z) \
+        F(ContactRegion, high_x) F(ContactRegion, high_y) F(ContactRegion, high_z) \
     S(ShapeRecord) F(ShapeRecord, material) F(ShapeRecord, light) \
     S(MaterialRecord) F(MaterialRecord, kind) F(MaterialRecord, flags) F(MaterialRecord, transport) \
         F(MaterialRecord, medium) \

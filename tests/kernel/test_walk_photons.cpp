@@ -128,7 +128,7 @@ Walked walk(const Entering& e, const Options& options = {}) {
     const Buffer<Flux16> flux = on_device(e.flux);
     const Buffer<PathLedger> ledgers = on_device(e.ledgers);
     std::vector<BodyRecord> bodies;
-    for (const std::uint32_t flags : options.bodies) bodies.push_back({flags, 0, STOKES_NONE, 0});
+    for (const std::uint32_t flags : options.bodies) bodies.push_back({flags, 0, STOKES_NONE, 0, 0, {}});
     PassConstants constants = pass_on_device(8, 0, offset_mm).download().front();
     constants.first_collision_only = options.first_collision_only ? 1 : 0;
     Program(test_device(), "walk_photons.cl", options.compiler)

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "host/core/overloaded.hpp"
 #include "host/scene/mesh/mesh_topology.hpp"
-#include "host/scene/mesh/triangle_pairs.hpp"
 
 namespace stokes {
 
@@ -17,6 +17,9 @@ constexpr std::size_t most_points = 64;
 
 // Surfaces within this share of the distance lie in one place: some roundings of a coordinate.
 constexpr double one_place_share = 0.125;
+
+// Regions of a body that each of its photons is compared with.
+constexpr std::size_t most_regions = 24;
 
 bool has_medium(const Scene& scene, const Shape& shape) {
     return medium_of(scene.materials[static_cast<std::size_t>(shape.material)]).has_value();
@@ -86,6 +89,19 @@ Contacts::Pair ordered(int a, int b, const std::vector<bool>& medium) {
     return swap ? Contacts::Pair{b, a} : Contacts::Pair{a, b};
 }
 
+// The regions of each body; many become one.
+std::vector<std::vector<Box>> few_regions(const std::map<Contacts::Pair, Box>& regions, std::size_t bodies) {
+    std::vector<std::vector<Box>> result(bodies);
+    for (const auto& [pair, box] : regions) result[static_cast<std::size_t>(pair.first)].push_back(box);
+    for (std::vector<Box>& boxes : result)
+        if (boxes.size() > most_regions) {
+            Box all;
+            for (const Box& box : boxes) all.add(box);
+            boxes = {all};
+        }
+    return result;
+}
+
 // Solid angle of a triangle over 4 pi, seen from the origin; seen from behind it counts positive (van Oosterom and
 // Strackee 1983).
 double winding(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -145,9 +161,14 @@ Contacts find_contacts(const Scene& scene, double distance_mm) {
     for (int body = 0; body < scene.body_count; ++body) boxes.push_back(box_of(scene, body));
     std::vector<BodyTriangle> triangles = candidates(scene, boxes, 2.0 * distance_mm);
     std::set<Contacts::Pair> coincide, cross;
+    std::map<Contacts::Pair, Box> regions;  // of a body, and the other
     visit_near_pairs(triangles, 2.0 * distance_mm, [&](const BodyTriangle& a, const BodyTriangle& b) {
         const auto of_a = static_cast<std::size_t>(a.body), of_b = static_cast<std::size_t>(b.body);
         result.touches[of_a] = result.touches[of_b] = true;
+        const Box common{glm::max(a.box.low, b.box.low) - 2.0 * distance_mm,
+                         glm::min(a.box.high, b.box.high) + 2.0 * distance_mm};
+        regions[{a.body, b.body}].add(common);
+        regions[{b.body, a.body}].add(common);
         if (share_a_plane(a, b, one_place_share * distance_mm)) {
             result.contested[a.index] = result.contested[b.index] = true;
             if (medium[of_a] && medium[of_b] && glm::dot(a.normal, b.normal) > 0.0)
@@ -156,6 +177,7 @@ Contacts find_contacts(const Scene& scene, double distance_mm) {
             cross.insert(ordered(a.body, b.body, medium));
         }
     });
+    result.regions = few_regions(regions, bodies);
     result.coincide.assign(coincide.begin(), coincide.end());
     result.cross.assign(cross.begin(), cross.end());
     for (std::size_t body = 0; body < bodies; ++body) {
