@@ -64,6 +64,7 @@ __kernel void classify_photons(EventRound round, PASS_ARGUMENTS, SURFACE_ARGUMEN
     __global Departure* departure = &departures[path];
     if (departure->inside != STOKES_NONE && (departure->arrives == 0u || hit.triangle == STOKES_NONE)) {
         departure->body = departure->inside;
+        if (round.notes_bodies != 0u) met_bodies[departure->inside] = 1u;
         entry_lists[i] = (uchar)walk_on(bodies, departure->inside, materials, rays[path], &points[path]);
         return;
     }

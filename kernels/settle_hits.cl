@@ -27,17 +27,20 @@ FORCE_INLINE bool may_touch(Neighbours near, uint body, float3 at) {
 // settled() of lib/contacts.clh where the hit may have a neighbour.
 FORCE_INLINE Hit settled_near(BvhScene scene, Neighbours near, Ray ray, Hit hit, float offset_mm) {
     if (hit.triangle == STOKES_NONE) return hit;
-    const float3 at = (float3)(ray.ox, ray.oy, ray.oz) + hit.t * (float3)(ray.dx, ray.dy, ray.dz);
-    if (!may_touch(near, near.triangles[hit.triangle].body, at)) return hit;
+    const Triangle t = near.triangles[hit.triangle];
+    const float3 at =
+        (float3)(t.v0x, t.v0y, t.v0z) + hit.u * (float3)(t.e1x, t.e1y, t.e1z) + hit.v * (float3)(t.e2x, t.e2y, t.e2z);
+    if ((t.flags & STOKES_TRIANGLE_CONTESTED) == 0u || !may_touch(near, t.body, at)) return hit;
     return settled(scene, near.triangles, ray, hit, STOKES_NONE, offset_mm);
 }
 
 // Work-items: n. Reads: list [n] indices of paths, departures, the scene, triangles, bodies, contact_regions, pass
-// (offset_mm). Reads rays and writes hits as trace_closest; a ray that meets something within its offset starts there.
+// (offset_mm). Reads rays and writes hits as trace_closest; a ray that meets something within its offset starts there,
+// and has arrived, whatever medium it runs in. Writes departures: light may leave the medium where it leaves a surface.
 __kernel void trace_photons(uint n, __global const PassConstants* pass, RAY_SCENE_ARGUMENTS,
                             __global const Triangle* triangles, __global const BodyRecord* bodies,
                             __global const ContactRegion* contact_regions, __global const uint* list,
-                            __global Ray* rays, __global const Departure* departures, __global Hit* hits) {
+                            __global Ray* rays, __global Departure* departures, __global Hit* hits) {
     const uint i = (uint)get_global_id(0);
     if (i >= n) return;
     const uint path = list[i];
@@ -48,11 +51,14 @@ __kernel void trace_photons(uint n, __global const PassConstants* pass, RAY_SCEN
     if (from.body != STOKES_NONE && from.arrives == 0u && ray.t_min <= ray.t_max &&
         may_touch(near, from.body, (float3)(ray.ox, ray.oy, ray.oz))) {
         const bool solid = (bodies[from.body].flags & STOKES_BODY_SOLID) != 0u;
+        if (from.inside != STOKES_NONE && leaves_both(scene, triangles, ray, from, pass->offset_mm))
+            departures[path].inside = bodies[from.inside].inside;
         float3 at;
         const Hit hit = touched(scene, triangles, ray, from, solid, pass->offset_mm, &at);
         if (hit.triangle != STOKES_NONE) {
             rays[path] = (Ray){at.x, at.y, at.z, 0.0f, ray.dx, ray.dy, ray.dz, ray.t_max};
             hits[path] = hit;
+            departures[path].arrives = (uint)(departures[path].inside != STOKES_NONE);
             return;
         }
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -93,6 +94,13 @@ void say_what_was_dropped(const RenderStats& stats) {
 void warn_about(const FilmImage& film) {
     if (const std::size_t bad = count_non_finite(film))
         warn(fmt::format("{} pixels are not finite and are shown black", bad));
+    const auto dark = [](const std::vector<float>& layer) {
+        return std::all_of(layer.begin(), layer.end(), [](float value) { return value == 0.0f; });
+    };
+    if (std::all_of(film.xyz.begin(), film.xyz.end(), dark))
+        warn(
+            "the picture is black: no light comes from what the camera sees; the camera may be within a body or behind "
+            "a surface, whose back is black");
 }
 
 void write_results(const OutputFiles& files, const Scene& scene, const FilmImage& film, const RenderStats& stats,

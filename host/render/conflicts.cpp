@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "host/core/error.hpp"
 #include "host/render/device_scene.hpp"
 #include "host/render/transport/transport_model.hpp"
@@ -10,6 +12,9 @@
 namespace stokes {
 
 namespace {
+
+// A body smaller than so many offsets of rays loses a hundredth of its light and more.
+constexpr double least_offsets = 100.0;
 
 bool takes_for_half_space(const Scene& scene, int body) {
     return transport_model(transport_of_body(scene, body)).takes_bodies_for_half_spaces();
@@ -76,6 +81,30 @@ void add_contained(const Scene& scene, std::vector<std::string>& lines) {
     }
 }
 
+// Bodies so small beside the scene that rays start far off their surfaces.
+void add_tiny(const Scene& scene, double offset_mm, std::vector<std::string>& lines) {
+    std::size_t tiny = 0;
+    std::string name;
+    double smallest_mm = INFINITY;
+    for (const Shape& shape : scene.shapes) {
+        Box box;
+        for (const glm::vec3& p : shape.mesh.positions_mm) box.add(glm::dvec3(p));
+        const glm::dvec3 size = box.high - box.low;
+        const double largest_mm = std::max({size.x, size.y, size.z});
+        if (!(largest_mm < least_offsets * offset_mm)) continue;
+        ++tiny;
+        if (largest_mm < smallest_mm) {
+            smallest_mm = largest_mm;
+            name = shape.name;
+        }
+    }
+    if (tiny == 0) return;
+    lines.push_back(fmt::format(
+        "{}: shape \"{}\"{} is {:.3g} mm large in a scene where rays start {:.2g} mm off a surface, in proportion to "
+        "what lies farthest out: its shadows and faces are not right",
+        scene.file, name, tiny > 1 ? fmt::format(" (and {} more)", tiny - 1) : "", smallest_mm, offset_mm));
+}
+
 }  // namespace
 
 std::vector<std::string> find_conflicts(const Scene& scene) {
@@ -83,6 +112,7 @@ std::vector<std::string> find_conflicts(const Scene& scene) {
     check_camera(scene);
     std::vector<std::string> lines;
     add_contained(scene, lines);
+    add_tiny(scene, ray_offset_mm(scene), lines);
     const Contacts contacts = find_contacts(scene, ray_offset_mm(scene));
     for (const auto& [body, other] : contacts.coincide)
         lines.push_back(fmt::format(

@@ -59,7 +59,7 @@ TEST_CASE("render writes the picture, the PNG and the figures", "[command line]"
     CHECK(stats["photons_emitted"] == 8000);
     CHECK(stats["rays_traced"].get<int>() >= 8000 + 2 * 24 * 16);
     CHECK(stats["radius_last_mm"] < stats["radius_first_mm"]);
-    for (const char* kernel : {"emit_stratified", "trace_closest", "classify_photons", "gather_radiance"})
+    for (const char* kernel : {"emit_stratified", "trace_photons", "classify_photons", "gather_radiance"})
         CHECK(stats["stages"].contains(kernel));
     for (const char* cause : {"missed_exit", "map_full", "event_limit", "overflow"})
         CHECK(stats["dropped"].contains(cause));

@@ -73,7 +73,7 @@ const std::vector<Change> changes = {
     {"medium", "dipole_eta", "/media/wax/dipole_eta", 1.5},
     {"fluorophore", "excitation", "/fluorophores/blue/excitation", 1},
     {"fluorophore", "emission", "/fluorophores/blue/emission", 1},
-    {"fluorophore", "stokes_rule", "/fluorophores/blue/stokes_rule", "truncate"},
+    {"fluorophore", "stokes_rule", "/fluorophores/blue/stokes_rule", "keep_yield"},
     {"fluorophore", "conversion_per_nm", "/fluorophores/blue/conversion_per_nm", 0.001},
     {"fluorophore", "quantum_yield", "/fluorophores/blue/quantum_yield", 0.1},
     {"material_diffuse", "reflectance", "/materials/grey/reflectance", 0.9},
@@ -205,6 +205,8 @@ void check_effects(Transport transport, bool inside) {
         if (is_inside != inside) continue;
         Json changed = scene;
         changed[Json::json_pointer(change.place)] = change.value;
+        if (change.key == "stokes_rule" && transport != Transport::paper)  // the others keep the yield by default
+            changed[Json::json_pointer(change.place)] = "truncate";
         CAPTURE(word_of(transport), change.place);
         const bool same = picture(changed, warnings) == before;
         CHECK(same == says(warnings, change.key));

@@ -145,9 +145,9 @@ std::array<double, 2> range_of_y(const FilmImage& image) {
     return range;
 }
 
-Camera from_above(double fov_deg, const Setting& s) {
+Camera from_above(double fov_deg, const Setting& s, double height_mm = 100.0) {
     Camera camera;
-    camera.position_mm = placed({0.0, 100.0, 0.0}, s);
+    camera.position_mm = placed({0.0, height_mm, 0.0}, s);
     camera.target_mm = placed({0.0, 0.0, 0.0}, s);
     camera.up = placed({0.0, 0.0, -1.0}, s, true);
     camera.vertical_fov_deg = fov_deg;
@@ -160,6 +160,8 @@ Camera from_above(double fov_deg, const Setting& s) {
 TEST_CASE("of two sheets in one place the later one is seen", "[contacts]") {
     for (const Setting& s : settings)
         for (const bool light_is_later : {false, true}) {
+            // Far away a ray knows its distance less well than surfaces in one place are apart.
+            const double height_mm = light_is_later ? 5000.0 : 100.0;
             CAPTURE(s.turn, s.scale, light_is_later);
             Scene scene = scene_of(Transport::conserving, 1.0, 0.01, s);
             scene.materials.push_back(diffuse_material(0.2));
@@ -167,7 +169,7 @@ TEST_CASE("of two sheets in one place the later one is seen", "[contacts]") {
             const int first = light_is_later ? 3 : 1, second = light_is_later ? 1 : 3;
             add_shape(scene, "large", first, placed(make_rectangle(90.0, 90.0), s));
             add_shape(scene, "small", second, placed(make_rectangle(40.0, 41.0), s));
-            scene.camera = from_above(10.0, s);
+            scene.camera = from_above(1000.0 / height_mm, s, height_mm);
             scene.film = {32, 32, {}};
             Renderer renderer(test_device(), scene);
             renderer.render_pass(0);
@@ -176,6 +178,19 @@ TEST_CASE("of two sheets in one place the later one is seen", "[contacts]") {
             CHECK(range[0] == Approx(expected).epsilon(1e-3));
             CHECK(range[1] == Approx(expected).epsilon(1e-3));
         }
+}
+
+// All light that meets the tile is thrown back, from however far it comes.
+TEST_CASE("photons meet the tile that lies on a floor, not the floor", "[contacts]") {
+    for (const double height_mm : {100.0, 3000.0}) {
+        Scene scene = scene_of(Transport::conserving, 1.0, 0.01, {});
+        scene.materials.push_back(diffuse_material(1.0));
+        scene.lights = {disk_beam({0.0, height_mm, 0.0}, {0.01, -1.0, 0.0}, 10.0, one)};
+        std::get<DiskBeam>(scene.lights[0].kind).position_mm.x = -0.01 * height_mm;
+        add_shape(scene, "floor", 2, make_rectangle(100.0, 100.0));
+        add_shape(scene, "tile", 3, make_rectangle(60.0, 60.0));
+        CHECK(share(scene, absorbed, 2).mean() == 0.0);
+    }
 }
 
 // The radiance of a diffuse emitter of flux 1 and area A is 1 / (pi A), in whatever order the shapes stand.

@@ -107,6 +107,7 @@ std::vector<std::vector<Box>> few_regions(const std::map<Contacts::Pair, Box>& r
 double winding(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
     const double triple = glm::dot(a, glm::cross(b, c));
+    if (std::abs(triple) <= 1e-9 * la * lb * lc) return 0.0;  // in its plane
     const double rest = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
     return std::atan2(triple, rest) / (2.0 * M_PI);
 }
@@ -211,6 +212,39 @@ Container container_of_body(const Scene& scene, int body) {
     return container_of(scene, points, body);
 }
 
+namespace {
+
+// Whether the plane of a beam's section cuts a body where light goes through it.
+bool section_cuts(const Scene& scene, const Light& light, int body) {
+    const Beam* beam = std::visit(
+        Overloaded{[](const SurfaceLight&) -> const Beam* { return nullptr; }, [](const Beam& of) { return &of; }},
+        light.kind);
+    if (beam == nullptr) return false;
+    const bool disk = std::holds_alternative<DiskBeam>(light.kind);
+    const glm::dvec3 direction = glm::normalize(beam->direction);
+    const double u2 = glm::dot(beam->half_u_mm, beam->half_u_mm), v2 = glm::dot(beam->half_v_mm, beam->half_v_mm);
+    const double tolerance = 1e-6 * (std::sqrt(u2) + std::sqrt(v2));
+    for (const Shape& shape : scene.shapes) {
+        if (shape.body != body) continue;
+        for (const glm::uvec3& t : shape.mesh.triangles) {
+            double low = INFINITY, high = -INFINITY;
+            bool lit = false;
+            for (int k = 0; k < 3; ++k) {
+                const glm::dvec3 way = glm::dvec3(shape.mesh.positions_mm[t[k]]) - beam->position_mm;
+                const double height = glm::dot(way, direction);
+                low = std::min(low, height);
+                high = std::max(high, height);
+                const double u = glm::dot(way, beam->half_u_mm) / u2, v = glm::dot(way, beam->half_v_mm) / v2;
+                lit |= disk ? u * u + v * v < 1.0 : std::max(std::abs(u), std::abs(v)) < 1.0;
+            }
+            if (lit && low < -tolerance && high > tolerance) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
 Container container_of_light(const Scene& scene, const Light& light) {
     std::vector<glm::dvec3> points;
     int self = -1;
@@ -226,7 +260,12 @@ Container container_of_light(const Scene& scene, const Light& light) {
                           },
                           beam},
                light.kind);
-    return container_of(scene, points, self);
+    Container result = container_of(scene, points, self);
+    const std::vector<bool> medium = bodies_with_medium(scene);
+    for (int body = 0; body < scene.body_count && !result.whole; ++body)
+        if (medium[static_cast<std::size_t>(body)] && section_cuts(scene, light, body) && is_solid(scene, body))
+            result.part = body;
+    return result;
 }
 
 Container container_of_camera(const Scene& scene) { return container_of(scene, {scene.camera.position_mm}, -1); }
