@@ -8,8 +8,8 @@ namespace {
 
 const std::vector<std::pair<std::string, std::vector<std::string>>> groups = {
     {"tracing",
-     {"emit_photons", "emit_stratified", "trace_closest", "trace_probe", "classify_photons", "camera_rays",
-      "trace_closest_all", "trace_packets", "trace_reflections"}},
+     {"emit_photons", "emit_stratified", "trace_closest", "trace_photons", "settle_hits", "trace_probe",
+      "classify_photons", "camera_rays", "trace_closest_all", "trace_packets", "trace_reflections"}},
     {"depositing",
      {"scatter_diffuse", "sample_exits", "place_exits", "deposit_exits", "retrace_fluorescence", "retrace_elastic",
       "retrace_exits", "fold_exits", "draw_exits", "integrate_power", "walk_photons"}},
