@@ -69,6 +69,9 @@ TEST_CASE("Bodies that cross and surfaces that coincide are found") {
     CHECK(of_sunk.cross == std::vector<Contacts::Pair>{{0, 1}});
     CHECK(of_sunk.holds == std::vector<bool>{true, false});
     CHECK(of_sunk.coincide.empty());
+    // Sunk to where it has edges: a ball to its equator.
+    const Scene equator = scene_of({{0, make_sphere(10.0)}, {1, make_rectangle(50.0, 50.0)}});
+    CHECK(find_contacts(equator, near_mm).cross == std::vector<Contacts::Pair>{{0, 1}});
     // One in the corner of another: three faces in one place, facing one way.
     const Scene corner =
         scene_of({{0, block({10.0, 10.0, 10.0}, {5.0, 5.0, 5.0})}, {0, block({4.0, 4.0, 4.0}, {2.0, 2.0, 2.0})}});

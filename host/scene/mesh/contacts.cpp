@@ -162,7 +162,8 @@ Contacts find_contacts(const Scene& scene, double distance_mm) {
     for (int body = 0; body < scene.body_count; ++body) boxes.push_back(box_of(scene, body));
     std::vector<BodyTriangle> triangles = candidates(scene, boxes, 2.0 * distance_mm);
     std::set<Contacts::Pair> coincide, cross;
-    std::map<Contacts::Pair, Box> regions;  // of a body, and the other
+    std::map<Contacts::Pair, Box> regions;          // of a body, and the other
+    std::map<Contacts::Pair, std::set<int>> sides;  // on which a body stands on a plane of the other
     visit_near_pairs(triangles, 2.0 * distance_mm, [&](const BodyTriangle& a, const BodyTriangle& b) {
         const auto of_a = static_cast<std::size_t>(a.body), of_b = static_cast<std::size_t>(b.body);
         result.touches[of_a] = result.touches[of_b] = true;
@@ -176,8 +177,14 @@ Contacts find_contacts(const Scene& scene, double distance_mm) {
                 coincide.insert(ordered(a.body, b.body, medium));
         } else if ((medium[of_a] || medium[of_b]) && cross_each_other(a, b, distance_mm)) {
             cross.insert(ordered(a.body, b.body, medium));
+        } else if (medium[of_a] || medium[of_b]) {
+            if (const int side = stands_on(a, b, distance_mm)) sides[{a.body, b.body}].insert(side);
+            if (const int side = stands_on(b, a, distance_mm)) sides[{b.body, a.body}].insert(side);
         }
     });
+    // Cut just along its edges.
+    for (const auto& [pair, of_pair] : sides)
+        if (of_pair.size() == 2) cross.insert(ordered(pair.first, pair.second, medium));
     result.regions = few_regions(regions, bodies);
     result.coincide.assign(coincide.begin(), coincide.end());
     result.cross.assign(cross.begin(), cross.end());

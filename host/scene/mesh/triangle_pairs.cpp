@@ -150,4 +150,24 @@ bool cross_each_other(const BodyTriangle& a, const BodyTriangle& b, double dista
     return std::min(in_a.second, in_b.second) - std::max(in_a.first, in_b.first) > distance_mm;
 }
 
+int stands_on(const BodyTriangle& a, const BodyTriangle& plane, double distance_mm) {
+    const glm::dvec3 heights = distances_to_plane(a, plane);
+    for (int k = 0; k < 3; ++k) {
+        const int next = (k + 1) % 3, third = (k + 2) % 3;
+        if (std::abs(heights[k]) > distance_mm || std::abs(heights[next]) > distance_mm ||
+            !(std::abs(heights[third]) > distance_mm))
+            continue;
+        const glm::dvec3 middle =
+            0.5 * (a.corners[static_cast<std::size_t>(k)] + a.corners[static_cast<std::size_t>(next)]);
+        bool within = true;
+        for (std::size_t side = 0; side < 3; ++side) {
+            const glm::dvec3 edge = plane.corners[(side + 1) % 3] - plane.corners[side];
+            const glm::dvec3 inward = glm::cross(plane.normal, edge) / glm::length(edge);
+            within &= glm::dot(middle - plane.corners[side], inward) > distance_mm;
+        }
+        if (within) return heights[third] > 0.0 ? 1 : -1;
+    }
+    return 0;
+}
+
 }  // namespace stokes

@@ -47,4 +47,8 @@ bool share_a_plane(const BodyTriangle& a, const BodyTriangle& b, double distance
 // Whether two triangles pass through one another, each by more than the distance.
 bool cross_each_other(const BodyTriangle& a, const BodyTriangle& b, double distance_mm);
 
+// The side of a plane triangle on which another one stands with an edge within it: 1 its front, -1 its back; 0: it does
+// not.
+int stands_on(const BodyTriangle& a, const BodyTriangle& plane, double distance_mm);
+
 }  // namespace stokes
