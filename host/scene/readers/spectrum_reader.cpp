@@ -97,6 +97,8 @@ Spectrum SpectrumReader::read_relative(const ObjectReader& object, const char* k
 Spectrum SpectrumReader::read(const JsonCursor& where, Outside outside, double maximum) {
     Definition definition = definition_at(where, maximum);
     if (!definition.range_fault.empty()) where.fail(definition.range_fault);
+    if (definition.has_per)
+        where.fail("expected no \"per\": these values are no density over wavelength, as lights and emissions are");
     return spectrum_of(where, std::move(definition), outside, maximum);
 }
 
@@ -159,6 +161,7 @@ SpectrumReader::Definition SpectrumReader::read_pairs(const JsonCursor& pairs, c
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     result.range_fault = fault_of_range(unit, *low, *high);
     result.density_doubt = doubt_of_density(rules.unit, rules.per);
+    result.has_per = rules.per.has_value();
     if (spectrum.lambda_nm.front() > spectrum.lambda_nm.back()) {
         std::reverse(spectrum.lambda_nm.begin(), spectrum.lambda_nm.end());
         std::reverse(spectrum.value.begin(), spectrum.value.end());
@@ -179,6 +182,7 @@ SpectrumReader::Definition SpectrumReader::read_file_column(const ObjectReader& 
     } catch (const InputError& error) {
         column.fail(error.what());
     }
+    result.has_per = rules.per.has_value();
     result.scale = where.number("scale");
     result.spectrum = result.spectrum.scaled(result.scale);
     result.outside = read_outside(where);

@@ -24,8 +24,9 @@ class SpectrumReader {
     void define(const JsonCursor& spectra);
 
     // A name from "spectra", a number, or an object. Values are >= 0; one above maximum is an error. outside
-    // holds where the scene does not say; a constant is the same everywhere, an illuminant zero outside its
-    // table. Samples are means over whole nanometres (Spectrum::at_whole_nanometres); illuminants are as CIE has them.
+    // holds where the scene does not say, and "per" is an error; a constant is the same everywhere, an illuminant zero
+    // outside its table. Samples are means over whole nanometres (Spectrum::at_whole_nanometres); illuminants are as
+    // CIE has them.
     Spectrum read(const JsonCursor& where, Outside outside, double maximum);
     // The same of an object's key, whose declaration has the maximum.
     Spectrum read(const ObjectReader& object, const char* key, Outside outside);
@@ -47,6 +48,7 @@ class SpectrumReader {
         double scale = 1.0;                      // of its values
         std::string range_fault = {};            // fault_of_range(), of pairs
         std::string density_doubt = {};          // doubt_of_density()
+        bool has_per = false;                    // the scene says what values are per
     };
 
     Definition density_at(const ObjectReader& object, const char* key);
