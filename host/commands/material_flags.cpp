@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/commands/number_in.hpp"
+#include "host/core/csv_headings.hpp"
 #include "host/core/csv_spectrum.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
@@ -34,6 +35,14 @@ SampleRules rules_of(const char* flag, const MaterialFlags& flags) {
     return rules;
 }
 
+void warn_of_headings(std::string_view flag, const CsvTable& table, std::size_t column) {
+    const std::string& name = table.columns[column];
+    if (const std::string said = percent_above(table, column); flag == "--excitation" && !said.empty())
+        warn(fmt::format("{}: {}", flag, doubt_of_percent(name, said)));
+    if (const std::string said = per_cm_above(table, column); flag.rfind("--sigma", 0) == 0 && !said.empty())
+        warn(fmt::format("{}: {}", flag, doubt_of_per_cm(name, said)));
+}
+
 // FILE, or FILE:COLUMN where there is no file of the whole name; without a column the first after the
 // wavelengths.
 Spectrum csv_column_of(const char* flag, const std::string& text, Outside outside, const SampleRules& rules) {
@@ -41,8 +50,10 @@ Spectrum csv_column_of(const char* flag, const std::string& text, Outside outsid
     const std::size_t colon = text.rfind(':');
     const bool named = colon != std::string::npos && !std::filesystem::exists(text, ignored);
     const CsvTable table = read_csv(named ? text.substr(0, colon) : text);
-    ColumnSpectrum read = read_column(table, named ? text.substr(colon + 1) : "2", outside, rules);
+    const std::string column = named ? text.substr(colon + 1) : "2";
+    ColumnSpectrum read = read_column(table, column, outside, rules);
     for (const std::string& remark : read.remarks) warn(fmt::format("{}: {}", flag, remark));
+    warn_of_headings(flag, table, csv_column(table, column));
     if (is_density(flag) && !read.density_doubt.empty()) warn(fmt::format("{}: {}", flag, read.density_doubt));
     return std::move(read.spectrum);
 }

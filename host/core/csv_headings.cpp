@@ -200,6 +200,19 @@ bool is_amount(const std::string& note) {
     return std::any_of(note.begin(), note.end(), [](char c) { return std::isdigit(static_cast<unsigned char>(c)); });
 }
 
+// Text that speaks of mm as well may be of a conversion.
+bool says_per_cm(const std::string& text) {
+    const Text words = name_words(text);
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (words[i] == "percm" || (words[i] == "cm" && i > 0 && words[i - 1] == "per"))
+            return std::find(words.begin(), words.end(), "mm") == words.end();
+    return false;
+}
+
+std::string while_file_says(const std::string& column, const std::string& said) {
+    return column == said ? "" : fmt::format(", while the file says \"{}\"", printable(said));
+}
+
 }  // namespace
 
 bool names_wavelengths(std::string_view name) {
@@ -229,11 +242,23 @@ std::string percent_above(const CsvTable& table, std::size_t column) {
 }
 
 std::string per_cm_above(const CsvTable& table, std::size_t column) {
-    for (const std::string& text : table.headings[column]) {
-        const Text words = name_words(text);
-        if (std::find(words.begin(), words.end(), "percm") != words.end()) return text;
-    }
+    for (const std::string& text : table.headings[column])
+        if (says_per_cm(text)) return text;
+    const Text& above = table.headings[0];
+    if (std::any_of(above.begin(), above.end(), says_per_cm)) return "";
+    for (const std::string& note : table.notes)
+        if (says_per_cm(note) && !any_of(name_words(note), is_reciprocal_quantity)) return note;
     return "";
+}
+
+std::string doubt_of_percent(const std::string& column, const std::string& said) {
+    return fmt::format("column \"{}\" is read as a share of 1{}; percentages have \"scale\": 0.01", printable(column),
+                       while_file_says(column, said));
+}
+
+std::string doubt_of_per_cm(const std::string& column, const std::string& said) {
+    return fmt::format("column \"{}\" is read as 1/mm{}; values per cm have \"scale\": 0.1", printable(column),
+                       while_file_says(column, said));
 }
 
 }  // namespace stokes

@@ -28,7 +28,11 @@ CsvAxis axis_of(const CsvTable& table, std::size_t column, bool unit_said);
 // The text by which a column is in percent; "" where nothing says so.
 std::string percent_above(const CsvTable& table, std::size_t column);
 
-// The text by which a column is per centimetre; "" where nothing says so.
+// The text by which a column is per centimetre, and its wavelengths are no wavenumbers; "" where nothing says so.
 std::string per_cm_above(const CsvTable& table, std::size_t column);
+
+// "column .. is read as ..", for a column that these say so of.
+std::string doubt_of_percent(const std::string& column, const std::string& said);
+std::string doubt_of_per_cm(const std::string& column, const std::string& said);
 
 }  // namespace stokes

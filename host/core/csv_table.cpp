@@ -274,7 +274,7 @@ std::string names_of(const CsvTable& table) {
 }  // namespace
 
 CsvTable parse_csv(std::string_view text, const std::string& file) {
-    return TableReader(file).read(plain_text(std::string(text), file));
+    return TableReader(file).read(with_plain_blanks(plain_text(std::string(text), file)));
 }
 
 CsvTable read_csv(const std::string& path) { return parse_csv(read_file(path), path); }

@@ -95,3 +95,41 @@ TEST_CASE("a first column that is named as no wavelength is refused, unless its 
     }
     check_refused({"2", "Frequency R corrected\n749 1\n599 2\n"}, "column 1 is named \"Frequency R corrected\"");
 }
+
+TEST_CASE("what is in percent, or per centimetre, is found in any line above the table") {
+    struct Case {
+        const char *text, *said;
+    };
+    const Case percent[] = {
+        {"wl,%R\n400,1\n", "%R"},
+        {"wl,R percent\n400,1\n", "R percent"},
+        {"wl;R\nnm;%\n400;1\n", "%"},
+        {"wavelength;R\nnm;%\n400;1\n", "%"},
+        {"Reflectance in %\nwl;R\n400;1\n", "Reflectance in %"},
+        {"# all values in percent\nwl;R\n400;1\n", "all values in percent"},
+        {"Humidity: 40 %\nwl;R\n400;1\n", ""},
+        {"wl,R,%T\n400,1,1\n", ""},
+    };
+    for (const Case& c : percent) {
+        INFO(c.text);
+        CHECK(percent_above(parse_csv(c.text, "t.csv"), 1) == c.said);
+    }
+    const Case per_cm[] = {
+        {"wavelength (nm),mua (cm-1)\n400,1\n", "mua (cm-1)"},
+        {"nm,mus (1/cm)\n400,1\n", "mus (1/cm)"},
+        {"nm,mus [cm^-1]\n400,1\n", "mus [cm^-1]"},
+        {"nm,mus [cm\xe2\x81\xbb\xc2\xb9]\n400,1\n", "mus [cm\xe2\x81\xbb\xc2\xb9]"},
+        {"nm,mus [/cm]\n400,1\n", "mus [/cm]"},
+        {"nm,sigma_per_cm\n400,1\n", "sigma_per_cm"},
+        {"wl;a\nnm;cm-1\n400;1\n", "cm-1"},
+        {"# absorption in cm-1\nwl;a\n400;1\n", "absorption in cm-1"},
+        {"# from cm-1 to mm-1\nwl;a\n400;1\n", ""},
+        {"# resolution 4 cm-1\nwavenumber (cm-1);a\n20000;1\n", ""},
+        {"nm,mua (mm-1)\n400,1\n", ""},
+        {"nm,irradiance (W/cm2)\n400,1\n", ""},
+    };
+    for (const Case& c : per_cm) {
+        INFO(c.text);
+        CHECK(per_cm_above(parse_csv(c.text, "t.csv"), 1) == c.said);
+    }
+}

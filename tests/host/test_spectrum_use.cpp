@@ -70,3 +70,37 @@ TEST_CASE("probe takes its emission alone per unit") {
     CHECK(file.err.empty());
     CHECK(file.out == number.out);
 }
+
+// What nothing scales is read as it stands, which is 100 or 10 times off where the file is right.
+TEST_CASE("columns in percent and per centimetre are warned of where they are read as they stand") {
+    const TemporaryFolder folder;
+    put_file(folder.file("r.csv"), "wl;R;a\nnm;%;cm-1\n400;0.5;0.5\n500;0.5;0.5\n");
+    const auto warnings = [&](const char* pointer, const Json& more, const char* column) {
+        Json scene = base();
+        Json spectrum = {{"file", "r.csv"}, {"column", column}};
+        spectrum.update(more);
+        scene[Json::json_pointer(pointer)] = spectrum;
+        put_file(folder.file("s.json"), scene.dump());
+        const Outcome run = run_stokes("render " + folder.file("s.json") + " -o " + folder.file("s.exr") +
+                                       " --size 4x3 --passes 1 --photons 500 --quiet");
+        CHECK(run.code == 0);
+        return run.err;
+    };
+    const Json as_it_stands = Json::object();
+    CHECK_THAT(
+        warnings("/materials/paint/reflectance", as_it_stands, "R"),
+        Contains("warning: ") && Contains("materials.paint.reflectance: column \"R\" is read as a share of 1, while "
+                                          "the file says \"%\"; percentages have \"scale\": 0.01"));
+    const std::string per_cm =
+        "column \"a\" is read as 1/mm, while the file says \"cm-1\"; values per cm have \"scale\": 0.1";
+    CHECK_THAT(warnings("/media/stone/sigma_a_per_mm", as_it_stands, "a"),
+               Contains("media.stone.sigma_a_per_mm: " + per_cm));
+    CHECK(warnings("/materials/paint/reflectance", {{"scale", 0.01}}, "R").find("percent") == std::string::npos);
+    CHECK(warnings("/media/stone/sigma_a_per_mm", {{"scale", 0.1}}, "a").find("per cm") == std::string::npos);
+
+    const Outcome probe = run_stokes("probe --photons 640 --device cpu --sigma-s 1 --sigma-a " + folder.file("r.csv") +
+                                     ":a --fraction 0.5 --emission 1 --excitation " + folder.file("r.csv") + ":R");
+    CHECK(probe.code == 0);
+    CHECK_THAT(probe.err,
+               Contains("--sigma-a: " + per_cm) && Contains("--excitation: column \"R\" is read as a share of 1"));
+}
