@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/commands/number_in.hpp"
+#include "host/core/csv_headings.hpp"
 #include "host/core/csv_spectrum.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
@@ -24,12 +25,22 @@ const char* const material_flags[] = {"--sigma-s",     "--sigma-a",         "--e
                                       "--stokes-rule", "--wavelength-unit", "--per",      "--negative"};
 const char* const spectrum_type = "NUMBER|FILE.csv[:COLUMN]";
 
-SampleRules rules_of(const MaterialFlags& flags) {
+bool is_density(std::string_view flag) { return flag == "--emission"; }
+
+SampleRules rules_of(const char* flag, const MaterialFlags& flags) {
     SampleRules rules;
     rules.unit = value_of_word<WavelengthUnit>(flags.wavelength_unit);
-    rules.per = value_of_word<Per>(flags.per);
+    if (is_density(flag)) rules.per = value_of_word<Per>(flags.per);
     rules.negative = value_of_word<Negative>(flags.negative);
     return rules;
+}
+
+void warn_of_headings(std::string_view flag, const CsvTable& table, std::size_t column) {
+    const std::string& name = table.columns[column];
+    if (const std::string said = percent_above(table, column); flag == "--excitation" && !said.empty())
+        warn(fmt::format("{}: {}", flag, doubt_of_percent(name, said)));
+    if (const std::string said = per_cm_above(table, column); flag.rfind("--sigma", 0) == 0 && !said.empty())
+        warn(fmt::format("{}: {}", flag, doubt_of_per_cm(name, said)));
 }
 
 // FILE, or FILE:COLUMN where there is no file of the whole name; without a column the first after the
@@ -39,23 +50,24 @@ Spectrum csv_column_of(const char* flag, const std::string& text, Outside outsid
     const std::size_t colon = text.rfind(':');
     const bool named = colon != std::string::npos && !std::filesystem::exists(text, ignored);
     const CsvTable table = read_csv(named ? text.substr(0, colon) : text);
-    ColumnSpectrum read = read_column(table, named ? text.substr(colon + 1) : "2", outside, rules);
+    const std::string column = named ? text.substr(colon + 1) : "2";
+    ColumnSpectrum read = read_column(table, column, outside, rules);
     for (const std::string& remark : read.remarks) warn(fmt::format("{}: {}", flag, remark));
-    if (std::string_view(flag) == "--emission" && !read.density_doubt.empty())
-        warn(fmt::format("{}: {}", flag, read.density_doubt));
+    warn_of_headings(flag, table, csv_column(table, column));
+    if (is_density(flag) && !read.density_doubt.empty()) warn(fmt::format("{}: {}", flag, read.density_doubt));
     return std::move(read.spectrum);
 }
 
 // As given, not yet at whole nanometres.
 Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside, double maximum,
-                     const SampleRules& rules) {
+                     const MaterialFlags& flags) {
     const auto number = parse_double(text);
     Spectrum spectrum;
     if (number) {
         spectrum = Spectrum::constant(*number);
     } else {
         try {
-            spectrum = csv_column_of(flag, text, outside, rules);
+            spectrum = csv_column_of(flag, text, outside, rules_of(flag, flags));
         } catch (const InputError& error) {
             throw InputError(fmt::format("{}: {}", flag, error.what()));
         }
@@ -70,10 +82,10 @@ Spectrum spectrum_of(const char* flag, const std::string& text, Outside outside,
 Medium medium_of(const MaterialFlags& flags) {
     Medium medium;
     medium.name = "command line";
-    medium.sigma_s = spectrum_of("--sigma-s", flags.sigma_s, Outside::hold, largest_spectrum_value, rules_of(flags))
-                         .at_whole_nanometres();
-    medium.sigma_a = spectrum_of("--sigma-a", flags.sigma_a, Outside::hold, largest_spectrum_value, rules_of(flags))
-                         .at_whole_nanometres();
+    medium.sigma_s =
+        spectrum_of("--sigma-s", flags.sigma_s, Outside::hold, largest_spectrum_value, flags).at_whole_nanometres();
+    medium.sigma_a =
+        spectrum_of("--sigma-a", flags.sigma_a, Outside::hold, largest_spectrum_value, flags).at_whole_nanometres();
     medium.eta = flags.eta;
     for (int lambda = first_lambda_nm; lambda <= last_lambda_nm; ++lambda) {
         const double sigma_t = medium.sigma_s.at(lambda) + medium.sigma_a.at(lambda);
@@ -89,13 +101,12 @@ Fluorophore fluorophore_of(const MaterialFlags& flags) {
     Fluorophore fluorophore;
     fluorophore.name = "command line";
     fluorophore.excitation =
-        spectrum_of("--excitation", flags.excitation, Outside::zero, 1.0, rules_of(flags)).at_whole_nanometres();
+        spectrum_of("--excitation", flags.excitation, Outside::zero, 1.0, flags).at_whole_nanometres();
     if (const std::string doubt = doubt_of_probability(fluorophore.excitation); !doubt.empty())
         warn("--excitation: " + doubt);
-    fluorophore.emission =
-        spectrum_of("--emission", flags.emission, Outside::zero, largest_spectrum_value, rules_of(flags))
-            .with_maximum_1()
-            .at_whole_nanometres();
+    fluorophore.emission = spectrum_of("--emission", flags.emission, Outside::zero, largest_spectrum_value, flags)
+                               .with_maximum_1()
+                               .at_whole_nanometres();
     if (!(fluorophore.emission.sum_1nm() > 0.0))
         throw InputError(
             fmt::format("--emission: expected some from {} to {} nm, got none", first_lambda_nm, last_lambda_nm));
@@ -166,12 +177,14 @@ ProbeMaterial material_of(const CLI::App& command, const MaterialFlags& flags) {
     ProbeMaterial material;
     material.name = "command line";
     if (!together(command, {"--sigma-s", "--sigma-a"})) throw InputError("probe: expected --sigma-s and --sigma-a");
+    if (command.count("--per") && parse_double(flags.emission))
+        throw InputError("--per: expected a file in --emission; a number is no table over wavelength");
     material.medium = medium_of(flags);
     material.fresnel = flags.fresnel;
     if (together(command, {"--fraction", "--excitation", "--emission"})) {
         material.dyes = {{fluorophore_of(flags), flags.fraction}};
     } else {
-        for (const char* flag : {"--quantum-yield", "--stokes-rule"})
+        for (const char* flag : {"--quantum-yield", "--stokes-rule", "--per"})
             if (command.count(flag))
                 throw InputError(fmt::format("{}: expected --fraction, --excitation and --emission as well", flag));
     }

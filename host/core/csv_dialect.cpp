@@ -87,6 +87,25 @@ std::optional<char> separator_of_row(std::string_view line) {
     return with_text;
 }
 
+std::string with_plain_blanks(const std::string& text) {
+    const std::string_view spaces[] = {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x89", "\xe2\x80\x87"};
+    const auto is_digit = [&](std::size_t at) {
+        return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at]));
+    };
+    std::string result;
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t size = 0;
+        for (const std::string_view space : spaces)
+            if (text.compare(i, space.size(), space) == 0) size = space.size();
+        if (size == 0 || (i > 0 && is_digit(i - 1) && is_digit(i + size)))
+            result += text.substr(i, size == 0 ? 1 : size);
+        else
+            result += ' ';
+        i += size == 0 ? 1 : size;
+    }
+    return result;
+}
+
 bool starts_with_number(std::string_view line) {
     return std::any_of(csv_separators.begin(), csv_separators.end(),
                        [&](char separator) { return csv_cells(line, separator)[0].number.has_value(); });

@@ -26,6 +26,9 @@ std::vector<CsvCell> csv_cells(std::string_view line, char separator);
 // numbers or blank; failing that, where anything but blanks separates, the first by which another cell is a number.
 std::optional<char> separator_of_row(std::string_view line);
 
+// The text with blanks for no-break and thin spaces, but for those between digits: they may stand between thousands.
+std::string with_plain_blanks(const std::string& text);
+
 // Whether the line starts with a number, by any separator.
 bool starts_with_number(std::string_view line);
 

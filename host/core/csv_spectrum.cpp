@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/csv_headings.hpp"
 #include "host/core/error.hpp"
 #include "host/core/text_input.hpp"
 
@@ -28,9 +29,11 @@ class ColumnReader {
         : table_(table),
           rules_(rules),
           column_(csv_column(table, name)),
+          axis_(axis_of(table, column_, rules.unit.has_value())),
           name_(table.columns[column_].empty() ? name : table.columns[column_]) {}
 
     ColumnSpectrum read(Outside outside) {
+        find_rows();
         const WavelengthUnit unit = read_unit();
         std::vector<Sample> samples = samples_in(unit);
         keep_values(samples);
@@ -50,12 +53,39 @@ class ColumnReader {
         throw InputError(fmt::format("{}:{}: {}: {}", table_.file, table_.lines[row], printable(name_), what));
     }
 
+    // Those with a wavelength: of several curves, the shorter ones have blank cells at their ends.
+    void find_rows() {
+        const std::vector<double>& x = table_.values[axis_.column];
+        for (std::size_t row = 0; row < x.size(); ++row) {
+            if (std::isnan(x[row])) {
+                if (!std::isnan(table_.values[column_][row]) || table_.texts.count({axis_.column, row}) != 0)
+                    fail(row, fmt::format("expected a wavelength in column {}", axis_.column + 1));
+                continue;
+            }
+            if (!(x[row] > 0.0)) fail(row, fmt::format("expected a positive wavelength, got {}", x[row]));
+            rows_.push_back(row);
+            const std::size_t n = rows_.size();
+            if (n < 2) continue;
+            const double before = x[rows_[n - 2]];
+            if (x[row] == before || (x[row] > before) != (x[rows_[1]] > x[rows_[0]]))
+                fail(row,
+                     fmt::format("expected wavelengths in column {} that increase, or decrease, throughout, got {} "
+                                 "after {}",
+                                 axis_.column + 1, x[row], before));
+        }
+        if (rows_.empty())
+            throw InputError(
+                fmt::format("{}: {}: no wavelength in column {}", table_.file, printable(name_), axis_.column + 1));
+    }
+
     WavelengthUnit read_unit() {
-        const auto said = rules_.unit ? rules_.unit : table_.unit;
-        if (rules_.unit && table_.unit && *rules_.unit != *table_.unit)
+        const auto said = rules_.unit ? rules_.unit : axis_.unit;
+        if (rules_.unit && axis_.unit && *rules_.unit != *axis_.unit)
             result_.remarks.push_back(fmt::format("{}: read in {}, while its column names say {}", table_.file,
-                                                  word_of(*rules_.unit), word_of(*table_.unit)));
-        const auto [low, high] = std::minmax_element(table_.values[0].begin(), table_.values[0].end());
+                                                  word_of(*rules_.unit), word_of(*axis_.unit)));
+        std::vector<double> x;
+        for (const std::size_t row : rows_) x.push_back(table_.values[axis_.column][row]);
+        const auto [low, high] = std::minmax_element(x.begin(), x.end());
         if (const std::string fault = fault_of_range(said, *low, *high); !fault.empty())
             throw InputError(fmt::format("{}: {}", table_.file, fault));
         return said.value_or(WavelengthUnit::nm);
@@ -64,8 +94,8 @@ class ColumnReader {
     // By increasing wavelength, from the last one at or below first_edge_nm to the first at or above last_edge_nm.
     std::vector<Sample> samples_in(WavelengthUnit unit) const {
         std::vector<Sample> all;
-        for (std::size_t row = 0; row < table_.lines.size(); ++row)
-            all.push_back({wavelength_nm(unit, table_.values[0][row]), table_.values[column_][row], row});
+        for (const std::size_t row : rows_)
+            all.push_back({wavelength_nm(unit, table_.values[axis_.column][row]), table_.values[column_][row], row});
         if (all.front().lambda_nm > all.back().lambda_nm) std::reverse(all.begin(), all.end());
         const auto below = [](double edge, const Sample& sample) { return edge < sample.lambda_nm; };
         const auto above = [](const Sample& sample, double edge) { return sample.lambda_nm < edge; };
@@ -126,6 +156,8 @@ class ColumnReader {
     const CsvTable& table_;
     const SampleRules& rules_;
     std::size_t column_;
+    CsvAxis axis_;
+    std::vector<std::size_t> rows_;  // with a wavelength
     std::string name_;
     ColumnSpectrum result_;
 };

@@ -7,6 +7,7 @@
 
 #include "host/core/csv_table.hpp"
 #include "host/core/spectrum.hpp"
+#include "host/core/wavelength_unit.hpp"
 
 namespace stokes {
 

@@ -6,8 +6,10 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "host/core/csv_dialect.hpp"
+#include "host/core/csv_headings.hpp"
 #include "host/core/error.hpp"
 #include "host/core/text_encoding.hpp"
 #include "host/core/text_input.hpp"
@@ -36,6 +38,19 @@ bool is_comment(const std::string& text) {
             starts_with(text, "\"#"));
 }
 
+bool has_letters(const std::string& text) {
+    return std::any_of(text.begin(), text.end(),
+                       [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c < 0; });
+}
+
+std::string without_mark(std::string comment) {
+    if (starts_with(comment, "\"")) comment.erase(0, 1);
+    const char mark = comment.empty() ? '#' : comment[0];
+    comment.erase(0, std::min(comment.find_first_not_of(mark), comment.size()));
+    comment.erase(0, std::min(comment.find_first_not_of(" \t"), comment.size()));
+    return comment;
+}
+
 bool is_empty(const std::string& text) { return text.find_first_not_of(" \t,;|\"") == std::string::npos; }
 
 // Begin and end of the spectrum in files of spectrometers: ">>>>>Begin Spectral Data<<<<<".
@@ -55,7 +70,7 @@ class TableReader {
             if (before.lines.empty() && before.comments.empty()) refuse_other_formats(line);
             if (is_empty(line.text)) continue;
             if (is_comment(line.text)) {
-                if (table_.lines.empty()) before.comments.push_back(line);
+                if (table_.lines.empty() && has_letters(line.text)) before.comments.push_back(line);
             } else if (table_.lines.empty() && !start_table(line, before)) {
                 before.lines.push_back(line);
             } else if (!table_.lines.empty() && is_mark(line.text)) {
@@ -94,16 +109,39 @@ class TableReader {
         if (!before.lines.empty()) refuse_mixed_separators(line, first, before.lines.back());
         std::optional<Cells> names;
         if (!before.lines.empty()) names = names_in(before.lines, line, first);
-        if (!names && !before.comments.empty()) names = names_in_comment(before.comments.back(), first.size());
+        if (!names && !before.comments.empty()) names = names_in_comment(before.comments, first.size());
         if (names && names->size() > 2 && names->back().text.empty() && first.back().text.empty()) names->pop_back();
         table_.named = names.has_value();
         const std::size_t columns =
             names ? names->size() : first.size() - (first.size() > 2 && first.back().blank ? 1 : 0);
         for (std::size_t i = 0; i < columns; ++i)
             table_.columns.push_back(names ? (*names)[i].text : fmt::format("{}", i + 1));
-        if (names && !table_.unit) table_.unit = unit_in(table_.columns[0]);
         table_.values.resize(columns);
+        keep_headings(before);
+        const auto other = std::find_if(table_.columns.begin() + 1, table_.columns.end(), names_wavelengths);
+        has_other_wavelengths_ = other != table_.columns.end();
+        table_.wavelengths_first = !has_other_wavelengths_ || names_wavelengths(table_.columns[0]);
         return true;
+    }
+
+    void keep_headings(const Preamble& before) {
+        table_.headings.resize(table_.columns.size());
+        const auto keep = [&](const std::string& text, bool has_names) {
+            for (const char separator : csv_separators) {
+                Cells cells = csv_cells(text, separator);
+                while (cells.size() > table_.columns.size() && cells.back().text.empty()) cells.pop_back();
+                if (separator == ' ' || cells.size() != table_.columns.size() || cells[0].number) continue;
+                for (std::size_t i = 0; i < cells.size(); ++i) table_.headings[i].push_back(cells[i].text);
+                return;
+            }
+            if (!has_names && !is_mark(text)) table_.notes.push_back(text);
+        };
+        for (auto line = before.lines.rbegin(); line != before.lines.rend(); ++line)
+            keep(line->text, table_.named && line == before.lines.rbegin());
+        for (auto line = before.comments.rbegin(); line != before.comments.rend(); ++line)
+            keep(without_mark(line->text), table_.named && before.lines.empty() && line == before.comments.rbegin());
+        for (std::size_t i = 0; table_.named && i < table_.columns.size(); ++i)
+            table_.headings[i].push_back(table_.columns[i]);
     }
 
     void refuse_mixed_separators(const Line& row, const Cells& first, const Line& above) const {
@@ -139,18 +177,20 @@ class TableReader {
             if (cells > 1 && separator_ != ' ') fail_count(row.number, cells, first.size());
             return std::nullopt;
         }
-        if (std::isdigit(static_cast<unsigned char>((*names)[0].text[0])))
+        if (std::isdigit(static_cast<unsigned char>((*names)[0].text[0])) && !starts_with((*names)[0].text, "1/"))
             fail(last.number, fmt::format("expected column names or numbers, got \"{}\"", printable(last.text)));
         const auto unit = unit_in((*names)[0].text);
         if (!unit || lines.size() < 2 || (*names)[0].text.find_first_of(" _") != std::string::npos) return names;
         auto above = split_into(lines[lines.size() - 2].text, count);
-        if (!above) return names;
-        table_.unit = unit;
+        const auto is_value = [](const CsvCell& cell) {
+            return cell.number || (!cell.text.empty() && cell.text.back() == ':');
+        };
+        if (!above || std::any_of(above->begin(), above->end(), is_value)) return names;
         return above;
     }
 
-    std::optional<Cells> names_in_comment(const Line& comment, std::size_t count) const {
-        std::string text = comment.text;
+    std::optional<Cells> names_in_comment(const std::vector<Line>& comments, std::size_t count) const {
+        std::string text = comments.back().text;
         text.erase(0, text.find_first_not_of("#%!/\" \t"));
         return split_into(text, count);
     }
@@ -169,7 +209,7 @@ class TableReader {
         if (cells.size() == columns + 1 && cells.back().text.empty()) cells.pop_back();
         if (cells.size() != columns) fail_count(line.number, columns, cells.size());
         for (const CsvCell& cell : cells) look_at_commas(cell, line.number);
-        if (!cells[0].number) {
+        if (!cells[0].number && !(has_other_wavelengths_ && cells[0].blank)) {
             fail(line.number,
                  fmt::format("{}: expected a finite number, got \"{}\"", table_.columns[0], printable(cells[0].text)));
         }
@@ -178,7 +218,7 @@ class TableReader {
             table_.values[i].push_back(cells[i].number.value_or(std::numeric_limits<double>::quiet_NaN()));
             if (!cells[i].number && !cells[i].blank) table_.texts[{i, row}] = cells[i].text;
         }
-        check_wavelength(line.number);
+        if (!has_other_wavelengths_) check_wavelength(line.number);
         table_.lines.push_back(line.number);
     }
 
@@ -215,6 +255,7 @@ class TableReader {
 
     CsvTable table_;
     char separator_ = ',';
+    bool has_other_wavelengths_ = false;  // beside the first column's
     bool decimal_comma_ = false;
     std::string comma_, point_;  // a number with each
 };
@@ -222,10 +263,10 @@ class TableReader {
 std::string names_of(const CsvTable& table) {
     constexpr std::size_t most = 20;
     std::string names;
-    for (std::size_t i = 1; i < table.columns.size(); ++i) {
+    for (std::size_t i = table.wavelengths_first ? 1 : 0; i < table.columns.size(); ++i) {
         if (i > most) return names + ", ...";
         const std::string name = table.columns[i].empty() ? fmt::format("{}", i + 1) : printable(table.columns[i]);
-        names += (i > 1 ? ", " : "") + name;
+        names += (names.empty() ? "" : ", ") + name;
     }
     return names;
 }
@@ -233,22 +274,33 @@ std::string names_of(const CsvTable& table) {
 }  // namespace
 
 CsvTable parse_csv(std::string_view text, const std::string& file) {
-    return TableReader(file).read(plain_text(std::string(text), file));
+    return TableReader(file).read(with_plain_blanks(plain_text(std::string(text), file)));
 }
 
 CsvTable read_csv(const std::string& path) { return parse_csv(read_file(path), path); }
 
 std::size_t csv_column(const CsvTable& table, const std::string& name) {
-    const auto found = std::find(table.columns.begin() + 1, table.columns.end(), name);
-    if (found != table.columns.end() && !name.empty()) {
-        if (std::find(found + 1, table.columns.end(), name) != table.columns.end())
-            throw InputError(fmt::format("{}: several columns are named \"{}\"; take one by its number, from 2 on",
-                                         table.file, printable(name)));
-        return static_cast<std::size_t>(found - table.columns.begin());
-    }
+    const std::size_t first = table.wavelengths_first ? 1 : 0;
+    const auto only_one = [&](const auto& has_name) {
+        std::optional<std::size_t> found;
+        for (std::size_t i = first; i < table.columns.size() && !name.empty(); ++i) {
+            if (!has_name(i)) continue;
+            if (found)
+                throw InputError(fmt::format("{}: several columns are named \"{}\"; take one by its number, from 2 on",
+                                             table.file, printable(name)));
+            found = i;
+        }
+        return found;
+    };
+    if (const auto found = only_one([&](std::size_t i) { return table.columns[i] == name; })) return *found;
     const auto number = parse_integer(name);
     if (number && *number >= 2 && *number <= static_cast<std::int64_t>(table.columns.size()))
         return static_cast<std::size_t>(*number) - 1;
+    if (const auto found = only_one([&](std::size_t i) {
+            const std::vector<std::string>& above = table.headings[i];
+            return std::find(above.begin(), above.end(), name) != above.end();
+        }))
+        return *found;
     throw InputError(fmt::format("{}: no column \"{}\"; {}expected one of: {}", table.file, printable(name),
                                  table.named ? "" : "the file has no line of column names, so they go by number; ",
                                  names_of(table)));

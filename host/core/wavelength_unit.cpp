@@ -54,6 +54,9 @@ std::string plain(std::string_view name) {
                                                              {"cm**-1", "percm"},
                                                              {"cm-1", "percm"},
                                                              {"1/cm", "percm"},
+                                                             {"/cm)", "percm)"},
+                                                             {"/cm]", "percm]"},
+                                                             {"\xce\xbb", "lambda"},
                                                              {"(a)", " angstrom "},
                                                              {"[a]", " angstrom "}};
     for (const auto& [from, to] : spellings)
@@ -75,6 +78,20 @@ double units_per_nm(WavelengthUnit unit, double lambda_nm) {
 }
 
 bool is_reciprocal(WavelengthUnit unit) { return conversion_of(unit).reciprocal; }
+
+std::vector<std::string> name_words(std::string_view name) {
+    std::vector<std::string> words;
+    std::string word;
+    for (const char c : plain(name) + ' ') {
+        if (std::isalpha(static_cast<unsigned char>(c))) {
+            word += c;
+        } else if (!word.empty()) {
+            words.push_back(word);
+            word.clear();
+        }
+    }
+    return words;
+}
 
 std::optional<WavelengthUnit> unit_in(std::string_view name) {
     using Unit = WavelengthUnit;
@@ -102,15 +119,8 @@ std::optional<WavelengthUnit> unit_in(std::string_view name) {
                                                       {"wavenumbers", Unit::per_cm},
                                                       {"thz", Unit::thz}};
     std::set<Unit> found;
-    std::string word;
-    for (const char c : plain(name) + ' ') {
-        if (std::isalpha(static_cast<unsigned char>(c))) {
-            word += c;
-            continue;
-        }
+    for (const std::string& word : name_words(name))
         if (const auto unit = words.find(word); unit != words.end()) found.insert(unit->second);
-        word.clear();
-    }
     if (found.size() != 1) return std::nullopt;
     return *found.begin();
 }

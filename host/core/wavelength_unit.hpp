@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "host/core/words.hpp"
 
@@ -22,6 +23,9 @@ double units_per_nm(WavelengthUnit unit, double lambda_nm);
 
 // Whether equal steps of x are no equal steps of wavelength.
 bool is_reciprocal(WavelengthUnit unit);
+
+// The words of a column's name in lower case, units spelled alike: "percm" is cm^-1, cm-1 and 1/cm.
+std::vector<std::string> name_words(std::string_view name);
 
 // The unit that a column's name or the line of units below it says: "wavelength_um", "Wavelength (nm)", "lambda [µm]",
 // "cm^-1", UTF-8. None where it says none, or several.

@@ -59,6 +59,9 @@ TEST_CASE("tables with names are read by any separator, line end and encoding") 
         {"a separator said", "sep=;\nwavelength;power\n400;0.25\n410;1.5\n"},
         {"D exponents", "wavelength,power\n4.00D+02,2.5D-01\n410,1.5d0\n"},
         {"a line of units", "wavelength,power\nnm,W/nm\n400,0.25\n410,1.5\n"},
+        {"no-break spaces",
+         "wavelength\xc2\xa0,power\n400\xc2\xa0,\xc2\xa0"
+         "0.25\n410\xe2\x80\xaf,1.5\n"},
         {"decreasing wavelengths", "wavelength,power\n410,1.5\n400,0.25\n"},
     };
     for (const Dialect& dialect : dialects) {

@@ -228,6 +228,8 @@ TEST_CASE("probe says in one line what it cannot do", "[probe_command]") {
         {medium + "--fraction 0.5", "--fraction: expected --emission as well"},
         {medium + "--stokes-rule truncate", "--stokes-rule: expected --fraction, --excitation and --emission as well"},
         {medium + "--wavelength-unit mm", "--wavelength-unit"},
+        {"--sigma-s 1 --sigma-a " + folder.file("e.csv") + " --per unit", "--per: expected --fraction"},
+        {medium + "--fraction 1 --excitation 1 --emission 1 --per unit", "--per: expected a file in --emission"},
         {"--sigma-s 1 --sigma-a " + folder.file("um.csv"),
          "um.csv: expected wavelengths from 300 to 830 nm, got 0.3 to 0.8 nm; if they are in um"},
         {"--sigma-s 1 --sigma-a " + folder.file("noise.csv") + " --negative refuse",

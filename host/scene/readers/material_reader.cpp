@@ -18,8 +18,8 @@ Medium read_medium(const std::string& name, const JsonCursor& place, SpectrumRea
     const ObjectReader where(place, "medium");
     Medium medium;
     medium.name = name;
-    medium.sigma_s = spectra.read(where, "sigma_s_per_mm", Outside::hold).scaled(where.number("scale_sigma_s"));
-    medium.sigma_a = spectra.read(where, "sigma_a_per_mm", Outside::hold).scaled(where.number("scale_sigma_a"));
+    medium.sigma_s = spectra.read_per_mm(where, "sigma_s_per_mm", where.number("scale_sigma_s"));
+    medium.sigma_a = spectra.read_per_mm(where, "sigma_a_per_mm", where.number("scale_sigma_a"));
     medium.eta = where.number("eta");
     medium.dipole_eta = where.number("dipole_eta");
     medium.limited_keys = where.limited_keys();

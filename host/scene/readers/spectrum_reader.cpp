@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/core/csv_headings.hpp"
 #include "host/core/embedded.hpp"
 #include "host/core/error.hpp"
 #include "host/core/log.hpp"
@@ -95,8 +96,21 @@ Spectrum SpectrumReader::read_relative(const ObjectReader& object, const char* k
 }
 
 Spectrum SpectrumReader::read(const JsonCursor& where, Outside outside, double maximum) {
-    Definition definition = definition_at(where, maximum);
+    return read(where, definition_at(where, maximum), outside, maximum);
+}
+
+Spectrum SpectrumReader::read_per_mm(const ObjectReader& object, const char* key, double factor) {
+    const JsonCursor where = object.at(key);
+    Definition definition = definition_at(where, object.maximum(key));
+    if (!definition.per_cm.empty() && definition.scale == 1.0 && factor == 1.0)
+        warn(where.at_place(doubt_of_per_cm(*definition.column, definition.per_cm)));
+    return read(where, std::move(definition), Outside::hold, object.maximum(key)).scaled(factor);
+}
+
+Spectrum SpectrumReader::read(const JsonCursor& where, Definition definition, Outside outside, double maximum) const {
     if (!definition.range_fault.empty()) where.fail(definition.range_fault);
+    if (definition.has_per)
+        where.fail("expected no \"per\": these values are no density over wavelength, as lights and emissions are");
     return spectrum_of(where, std::move(definition), outside, maximum);
 }
 
@@ -118,10 +132,8 @@ SpectrumReader::Definition SpectrumReader::definition_at(const JsonCursor& where
 Spectrum SpectrumReader::spectrum_of(const JsonCursor& where, Definition definition, Outside outside,
                                      double maximum) const {
     check_maximum(where, definition.spectrum, maximum, definition.column.has_value());
-    if (definition.column && definition.scale == 1.0 && maximum == 1.0 &&
-        definition.column->find('%') != std::string::npos)
-        warn(where.at_place(fmt::format("column \"{}\" is read as a share of 1; percentages have \"scale\": 0.01",
-                                        printable(*definition.column))));
+    if (!definition.percent.empty() && definition.scale == 1.0 && maximum == 1.0)
+        warn(where.at_place(doubt_of_percent(*definition.column, definition.percent)));
     definition.spectrum.outside = definition.outside.value_or(outside);
     return definition.by_nanometre ? definition.spectrum : definition.spectrum.at_whole_nanometres();
 }
@@ -159,6 +171,7 @@ SpectrumReader::Definition SpectrumReader::read_pairs(const JsonCursor& pairs, c
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     result.range_fault = fault_of_range(unit, *low, *high);
     result.density_doubt = doubt_of_density(rules.unit, rules.per);
+    result.has_per = rules.per.has_value();
     if (spectrum.lambda_nm.front() > spectrum.lambda_nm.back()) {
         std::reverse(spectrum.lambda_nm.begin(), spectrum.lambda_nm.end());
         std::reverse(spectrum.value.begin(), spectrum.value.end());
@@ -179,10 +192,14 @@ SpectrumReader::Definition SpectrumReader::read_file_column(const ObjectReader& 
     } catch (const InputError& error) {
         column.fail(error.what());
     }
+    result.has_per = rules.per.has_value();
     result.scale = where.number("scale");
     result.spectrum = result.spectrum.scaled(result.scale);
     result.outside = read_outside(where);
-    result.column = csv.columns[csv_column(csv, column.text())];
+    const std::size_t place = csv_column(csv, column.text());
+    result.column = csv.columns[place];
+    result.percent = percent_above(csv, place);
+    result.per_cm = per_cm_above(csv, place);
     check_maximum(where, result.spectrum, value_range.high, false);
     return result;
 }

@@ -24,11 +24,15 @@ class SpectrumReader {
     void define(const JsonCursor& spectra);
 
     // A name from "spectra", a number, or an object. Values are >= 0; one above maximum is an error. outside
-    // holds where the scene does not say; a constant is the same everywhere, an illuminant zero outside its
-    // table. Samples are means over whole nanometres (Spectrum::at_whole_nanometres); illuminants are as CIE has them.
+    // holds where the scene does not say, and "per" is an error; a constant is the same everywhere, an illuminant zero
+    // outside its table. Samples are means over whole nanometres (Spectrum::at_whole_nanometres); illuminants are as
+    // CIE has them.
     Spectrum read(const JsonCursor& where, Outside outside, double maximum);
     // The same of an object's key, whose declaration has the maximum.
     Spectrum read(const ObjectReader& object, const char* key, Outside outside);
+    // The same of a coefficient per mm, times a factor; warns where its file says that it is per cm and nothing scales
+    // it.
+    Spectrum read_per_mm(const ObjectReader& object, const char* key, double factor);
     // The same of a density over wavelength, zero outside its table: one over photon energy is warned of, unless the
     // scene says what it is per.
     Spectrum read_density(const ObjectReader& object, const char* key);
@@ -47,10 +51,13 @@ class SpectrumReader {
         double scale = 1.0;                      // of its values
         std::string range_fault = {};            // fault_of_range(), of pairs
         std::string density_doubt = {};          // doubt_of_density()
+        std::string percent = {}, per_cm = {};   // what a file says so by, of its column
+        bool has_per = false;                    // the scene says what values are per
     };
 
     Definition density_at(const ObjectReader& object, const char* key);
     Definition definition_at(const JsonCursor& where, double maximum);
+    Spectrum read(const JsonCursor& where, Definition definition, Outside outside, double maximum) const;
     Spectrum spectrum_of(const JsonCursor& where, Definition definition, Outside outside, double maximum) const;
 
     Definition read_object(const JsonCursor& where);
