@@ -231,4 +231,53 @@ Orientation turn_outward(const std::vector<Mesh*>& meshes, const glm::dvec3& eye
     return found;
 }
 
+bool is_closed(const std::vector<Mesh*>& meshes) {
+    Orientation found;
+    Soup soup = soup_of(meshes);
+    return join_parts(soup, found).empty();
+}
+
+Pairs drop_reversed_twins(Mesh& mesh, bool may_drop) {
+    const Soup soup = soup_of({&mesh});
+    // Corners from the least one on, and whether the triangle goes round the other way.
+    struct Place {
+        glm::uvec3 corners;
+        bool reversed;
+        std::uint32_t triangle;
+    };
+    const auto key = [](const Place& p) {
+        return std::make_tuple(p.corners.x, p.corners.y, p.corners.z, p.reversed, p.triangle);
+    };
+    std::vector<Place> places;
+    for (std::uint32_t i = 0; i < soup.triangles.size(); ++i) {
+        glm::uvec3 t = soup.triangles[i];
+        while (t.x > t.y || t.x > t.z) t = {t.y, t.z, t.x};
+        const bool reversed = t.y > t.z;
+        if (reversed) std::swap(t.y, t.z);
+        places.push_back({t, reversed, i});
+    }
+    std::sort(places.begin(), places.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
+    std::vector<bool> keep(places.size(), false);
+    Pairs pairs;
+    for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+        std::uint32_t first = places[begin].triangle;
+        for (; end < places.size() && places[end].corners == places[begin].corners; ++end)
+            first = std::min(first, places[end].triangle);
+        keep[first] = true;
+        if (places[begin].reversed != places[end - 1].reversed) pairs.paired += end - begin;
+    }
+    pairs.dropped = may_drop && pairs.paired > 0 && pairs.paired == places.size();
+    if (!pairs.dropped) return pairs;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (!keep[i]) continue;
+        mesh.triangles[kept] = mesh.triangles[i];
+        if (!mesh.uv.empty()) mesh.uv[kept] = mesh.uv[i];
+        ++kept;
+    }
+    mesh.triangles.resize(kept);
+    if (!mesh.uv.empty()) mesh.uv.resize(kept);
+    return pairs;
+}
+
 }  // namespace stokes
