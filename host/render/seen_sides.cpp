@@ -14,7 +14,7 @@ constexpr std::size_t most_lines = 4;
 
 bool looks_black_from_behind(const Scene& scene, const Shape& shape) {
     const Material& material = scene.materials[static_cast<std::size_t>(shape.material)];
-    return !shape.two_sided && (shape.light >= 0 || !std::holds_alternative<BlackMaterial>(material.kind));
+    return !shape.two_sided && shape.light < 0 && !std::holds_alternative<BlackMaterial>(material.kind);
 }
 
 }  // namespace
@@ -34,11 +34,11 @@ std::vector<std::string> black_back_lines(const Scene& scene, const std::vector<
         const SeenSides& of = sides[told[i]];
         lines.push_back(
             fmt::format("shape \"{}\": {:.0f} % of what the camera sees of it is its back, which is black: "
-                        "faces have their front where their corners go round counter-clockwise",
+                        "these faces look away from the camera",
                         scene.shapes[told[i]].name, 100.0 * of.back / (static_cast<double>(of.front) + of.back)));
     }
-    if (told.size() > most_lines)
-        lines.push_back(fmt::format("{} more shapes show the camera their black back", told.size() - most_lines));
+    if (const std::size_t rest = told.size() - lines.size(); rest > 0)
+        lines.push_back(fmt::format("the camera sees the black back of {} more shape{}", rest, rest == 1 ? "" : "s"));
     return lines;
 }
 

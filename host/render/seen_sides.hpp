@@ -16,7 +16,7 @@ struct SeenSides {
 
 // Says of which shapes the camera sees their black backs, where these are a fifth or more of what it sees of them; the
 // most seen first, a line each, and where they are many a line for the rest. Two-sided and black shapes look alike from
-// both sides, and have none. sides: of each shape.
+// both sides, and lamps shine from their front: these have none. sides: of each shape.
 std::vector<std::string> black_back_lines(const Scene& scene, const std::vector<SeenSides>& sides);
 
 }  // namespace stokes

@@ -88,12 +88,15 @@ TEST_CASE("shares of black backs are told from a fifth on", "[seen_sides]") {
     sides[2] = {0, 3};
     sides[3] = {0, 400};
     sides[7] = sides[8] = {0, 100};
+    scene.shapes[6].light = 0;
+    sides[6] = {0, 100};
     const std::vector<std::string> two = black_back_lines(scene, sides);
     REQUIRE(two.size() == 2);
     CHECK_THAT(two[0], Contains("shape \"d\": 100 %"));
     CHECK_THAT(two[1], Contains("shape \"a\": 20 %"));
+    scene.shapes[6].light = -1;
     for (std::size_t i = 0; i < 7; ++i) sides[i] = {0, 10};
     const std::vector<std::string> many = black_back_lines(scene, sides);
     REQUIRE(many.size() == 5);
-    CHECK(many[4] == "3 more shapes show the camera their black back");
+    CHECK(many[4] == "the camera sees the black back of 3 more shapes");
 }
