@@ -33,7 +33,7 @@ std::string told_of(const std::string& obj, const std::string& material, bool be
         "materials": {"white": {"type": "diffuse", "reflectance": 0.8}, "black": {"type": "black"},
                       "milk": {"type": "translucent", "medium": "milk"}},
         "lights": [{"type": "beam", "section": "disk", "position_mm": [0, 200, 0], "direction": [0, -1, 0],
-                    "radius_mm": 60, "power_W": 1, "spectrum": {"illuminant": "D65"}}],
+                    "radius_mm": 60, "irradiance_W_m2": 10, "spectrum": {"illuminant": "D65"}}],
         "shapes": [{"type": "rectangle", "width_mm": 300, "height_mm": 300, "material": "white",
                     "transform": [{"translate_mm": [0, -20, 0]}]},
                    {"type": "mesh", "name": "thing", "file": "m.obj"}]})");

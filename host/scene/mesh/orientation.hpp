@@ -24,8 +24,8 @@ Orientation turn_outward(const std::vector<Mesh*>& meshes, const glm::dvec3& eye
 // Whether triangles pass each edge of the body in both directions equally often.
 bool is_closed(const std::vector<Mesh*>& meshes);
 
-// Where every triangle has one in the same place that faces the other way, keeps one of each such two. paired: how many
-// triangles have such another one that stays.
+// Where every triangle has one in the same place that faces the other way, keeps one of each such two, if it may. Else
+// paired: the triangles of sheets that have another one so; not those between solids that stand side by side.
 struct Pairs {
     bool dropped = false;
     std::size_t paired = 0;
