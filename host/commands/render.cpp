@@ -106,6 +106,8 @@ void render(const RenderOptions& options) {
     Progress progress(static_cast<std::uint32_t>(scene.render.passes), options.quiet);
     progress.preparing();
     const std::unique_ptr<Renderer> renderer = set_up(device, scene);
+    if (renderer)
+        for (const std::string& line : black_back_lines(scene, renderer->seen_sides())) warn(line);
     const double set_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress.start();
     if (renderer) set_at_stake(AtStake::passes);

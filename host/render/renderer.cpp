@@ -18,6 +18,9 @@ namespace {
 // Index of the trial pass that finds the radius; no render reaches it.
 constexpr std::uint32_t trial_pass = 0xffffffffu;
 
+// Camera rays that tell which sides of shapes are seen; of more, every so many.
+constexpr std::uint32_t most_side_rays = 1u << 18;
+
 // Trial passes for the aiming of photons have the indices below, and together this many photons where that takes no
 // more of them. The second half of them starts where the first half found that they should.
 constexpr std::uint32_t least_trials = 4, most_trials = 32;
@@ -73,6 +76,7 @@ Renderer::Renderer(const Device& device, const Scene& scene)
         trace_reflections_ = kernels.program(device, "trace_reflections.cl").kernel("trace_reflections");
     const std::clock_t start = std::clock();
     set_up_passes();
+    seen_sides_ = find_seen_sides();
     device_.finish();
     trials_processor_s_ = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     // The trials have added the emitters that their camera rays met.
@@ -232,6 +236,26 @@ void Renderer::find_visible_points(const CameraRecord& camera) {
     if (on_device_.has_contested) settle_.launch(count, common, rays);
     if (on_device_.has_mirrors) trace_reflections_.launch(count, common, rays, Arguments("camera", camera));
     gather_.collect_points(common, camera_rays_, camera_hits_, film_);
+}
+
+std::vector<SeenSides> Renderer::find_seen_sides() {
+    photon_pass_.prepare(trial_pass, photons_);
+    find_visible_points(view_.camera());
+    const Buffer<std::uint32_t> counts(device_, "sides of shapes",
+                                       std::vector<std::uint32_t>(2 * scene_.shapes.size(), 0));
+    const std::uint32_t n = view_.ray_count(), stride = (n + most_side_rays - 1) / most_side_rays;
+    Program(device_, "count_sides.cl")
+        .kernel("count_sides")
+        .launch((n + stride - 1) / stride, photon_pass_.arguments(),
+                Arguments("n", n)
+                    .add("stride", stride)
+                    .add("rays", camera_rays_)
+                    .add("hits", camera_hits_)
+                    .add("side_counts", counts));
+    const std::vector<std::uint32_t> found = counts.download();
+    std::vector<SeenSides> sides(scene_.shapes.size());
+    for (std::size_t i = 0; i < sides.size(); ++i) sides[i] = {found[2 * i], found[2 * i + 1]};
+    return sides;
 }
 
 // Adds the photons to the film, map by map: each map is sorted for the radii of the points, and summed about them.

@@ -12,6 +12,7 @@
 #include "host/render/gather.hpp"
 #include "host/render/ledger.hpp"
 #include "host/render/photon_pass.hpp"
+#include "host/render/seen_sides.hpp"
 #include "host/render/spatial_hash.hpp"
 #include "host/scene/scene.hpp"
 
@@ -37,6 +38,8 @@ class Renderer {
     const LedgerBook& book() const { return book_; }
     // Translucent bodies that no photon of these passes has met, by index.
     std::vector<int> unmet_bodies() const { return photon_pass_.unmet_bodies(); }
+    // Of each shape, what a pass's camera rays, or some of them, meet of its front and its back.
+    const std::vector<SeenSides>& seen_sides() const { return seen_sides_; }
     // Of the power that the lights emit, what starts where it can meet something.
     double emitted_part() const { return on_device_.emitted_part; }
     std::uint64_t camera_rays() const { return std::uint64_t{passes_} * view_.ray_count(); }
@@ -54,6 +57,7 @@ class Renderer {
     EmissionCells aimed_cells(const std::vector<EmittingLight>& lights, const std::vector<EmissionSample>& seeds);
     std::vector<PixelRadius> find_local_radii(double radius_mm);
     void find_visible_points(const CameraRecord& camera);
+    std::vector<SeenSides> find_seen_sides();
     void gather_maps(double radius_mm);
 
     Device device_;
@@ -72,6 +76,7 @@ class Renderer {
     Buffer<Ray> camera_rays_;
     Buffer<Hit> camera_hits_;
     Buffer<FilmValue> film_;
+    std::vector<SeenSides> seen_sides_;
     std::uint32_t passes_ = 0;
     LedgerBook book_;
 };

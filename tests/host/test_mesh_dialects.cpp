@@ -215,3 +215,36 @@ TEST_CASE("PLY coordinates that single precision has made coarse are told", "[me
     CHECK(parse_ply(text("double", "4080928"), "m.ply").remarks.empty());
     CHECK(parse_ply(text("float", "4080"), "m.ply").remarks.empty());
 }
+
+TEST_CASE("What a mesh file has beside its faces is told where it is not read", "[mesh_dialects]") {
+    const auto remark = [](const FileMesh& mesh) {
+        REQUIRE(mesh.remarks.size() == 1);
+        return mesh.remarks[0];
+    };
+    CHECK(remark(parse_obj(obj + "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\ncurv 0 1 1 2\nend\n", "m.obj")) ==
+          "m.obj:9: 2 free forms are not read (curv, surf ..), only faces");
+    const std::string tail = "end_header";
+    std::string strips = ply;
+    strips.insert(strips.find(tail), "element tristrips 1\nproperty list int int vertex_indices\n");
+    CHECK(remark(parse_ply(strips + "3 0 1 2\n", "m.ply")) == "m.ply: its element tristrips is not read, only faces");
+    std::string edges = ply;
+    edges.insert(edges.find(tail), "element edge 1\nproperty int a\nproperty int b\n");
+    check_square(parse_ply(edges + "0 1\n", "m.ply"));
+    check_square(parse_ply(ply + "\n \n", "m.ply"));
+    CHECK(remark(parse_ply(ply + "3 0 1 2\n", "m.ply")) ==
+          "m.ply: it goes on after all that its header promises, which is not read");
+    CHECK_THAT(remark(parse_ply(edges, "m.ply")), StartsWith("m.ply: the header promises 1 of element edge"));
+}
+
+TEST_CASE("Faces of a PLY file that have several materials are told", "[mesh_dialects]") {
+    const auto text = [](const std::string& second) {
+        return "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+               "element face 2\nproperty list uchar int vertex_indices\nproperty int material_index\nend_header\n"
+               "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0\n3 0 2 1 " +
+               second + "\n";
+    };
+    CHECK(parse_ply(text("0"), "m.ply").remarks.empty());
+    const FileMesh two = parse_ply(text("3"), "m.ply");
+    REQUIRE(two.remarks.size() == 1);
+    CHECK(two.remarks[0] == "m.ply: its faces have 2 materials (material_index), which are not told apart");
+}

@@ -41,7 +41,7 @@ struct Folder : TemporaryFolder {
         return R"({"format": "stokes-scene", "version": 1, "camera": {"position_mm": [0, 9, 9], "target_mm": [0, 0, 0]},
 "media": {"m": {"sigma_s_per_mm": 2, "sigma_a_per_mm": 0.1, "eta": 1.5}},
 "materials": {"a": {"type": "translucent", "medium": "m"}, "b": {"type": "translucent", "medium": "m"},
- "c": {"type": "diffuse", "reflectance": 0.5}},
+ "c": {"type": "diffuse", "reflectance": 0.5}, "d": {"type": "diffuse", "reflectance": 0.4}},
 "lights": [{"type": "sphere", "center_mm": [0, 9, 0], "radius_mm": 1, "spectrum": 1, "power_W": 1}],
 "shapes": [{"type": "mesh", )" +
                shape + "}]}";
@@ -157,4 +157,69 @@ TEST_CASE("An open mesh that faces away from the camera as a whole is told", "[m
     CHECK_THAT(folder.warnings(R"("file": "down.obj", "material": "c")"), Contains(told));
     CHECK(folder.warnings(R"("file": "up.obj", "material": "c")").empty());
     CHECK_THAT(folder.warnings(R"("file": "bent.obj", "material": "c")"), !Contains(told));
+}
+
+// The box of 2 x 2 x 2 faces inward; its top has a material of its own, and is open by itself as the rest is.
+TEST_CASE("A closed mesh of opaque materials that faces inward is turned over as a whole", "[mesh_materials]") {
+    const Folder folder;
+    std::string text = box(1, 0, "jade", "milk");
+    for (std::size_t at = text.find("\nf "); at != std::string::npos; at = text.find("\nf ", at + 1)) {
+        const std::size_t end = text.find('\n', at + 1);
+        std::string turned;
+        for (const char c : text.substr(at + 3, end - at - 3)) turned.insert(turned.begin(), c);
+        text.replace(at + 3, turned.size(), turned);
+    }
+    put_file(folder.file("in.obj"), text);
+    for (const char* file : {"tile.obj", "in.obj"}) {
+        const std::string shape = "\"file\": \"" + std::string(file) + R"(", "materials": {"jade": "c", "milk": "d"})";
+        const Scene scene = folder.scene(shape);
+        Mesh whole = scene.shapes[0].mesh;
+        for (const glm::uvec3& t : scene.shapes[1].mesh.triangles)
+            whole.triangles.push_back(t + static_cast<std::uint32_t>(whole.positions_mm.size()));
+        for (const glm::vec3& p : scene.shapes[1].mesh.positions_mm) whole.positions_mm.push_back(p);
+        CHECK(mesh_volume_mm3(whole) == Approx(8));
+        const bool inward = file == std::string("in.obj");
+        CHECK(Contains("faces inward: turned over 12 triangles").match(folder.warnings(shape)) == inward);
+    }
+}
+
+// A sheet of two triangles, and each once more from behind.
+TEST_CASE("A mesh whose faces are all there twice, facing both ways, has two sides", "[mesh_materials]") {
+    const Folder folder;
+    const std::string sheet = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 2 -1\nv 1 2 -1\nf 4 3 2\nf 4 2 1\n";
+    put_file(folder.file("both.obj"), sheet + "f 2 3 4\nf 1 2 4\n");
+    put_file(folder.file("half.obj"), sheet + "f 2 3 4\n");
+    const std::string both = R"("file": "both.obj", "material": "c")", half = R"("file": "half.obj", "material": "c")";
+    const Shape shape = folder.scene(both).shapes[0];
+    CHECK(shape.two_sided);
+    CHECK(shape.mesh.triangles == std::vector<glm::uvec3>{{3, 2, 1}, {3, 1, 0}});
+    CHECK_THAT(folder.warnings(both), Contains("each of its faces is there twice, facing both ways: it has 2 triangles "
+                                               "that look alike from both sides"));
+    CHECK_FALSE(folder.scene(half).shapes[0].two_sided);
+    CHECK(folder.scene(half).shapes[0].mesh.triangles.size() == 3);
+    CHECK_THAT(folder.warnings(half), Contains("2 triangles lie in one place with others that face the other way"));
+    // Polygons: a square that begins at another corner from behind, and a pentagon with a notch.
+    put_file(folder.file("ngon.obj"),
+             "v 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nv 1 0 1\nv 3 0 0\nv 5 0 0\nv 5 0 2\nv 3 0 2\n"
+             "f 9 8 7 6\nf 7 8 9 6\nf 5 4 3 2 1\nf 1 2 3 4 5\n");
+    const Shape ngon = folder.scene(R"("file": "ngon.obj", "material": "c")").shapes[0];
+    CHECK(ngon.two_sided);
+    CHECK(ngon.mesh.triangles.size() == 5);
+    CHECK(mesh_area_mm2(ngon.mesh) == Approx(4 + 3));
+    const Scene milk = folder.scene(R"("file": "both.obj", "material": "a")");
+    CHECK_FALSE(milk.shapes[0].two_sided);
+    CHECK(milk.shapes[0].mesh.triangles.size() == 4);
+}
+
+// Groups on one surface share vertices, and are one thing.
+TEST_CASE("Groups of a file that become one translucent body are told", "[mesh_materials]") {
+    const Folder folder;
+    put_file(folder.file("g.obj"), "g A\n" + box(1, 0, "x", "x") + "g B\n" + box(9, 5, "x", "x"));
+    std::string skin = box(1, 0, "x", "x");
+    skin.insert(skin.rfind("f "), "g top\n");
+    put_file(folder.file("skin.obj"), skin);
+    CHECK_THAT(folder.warnings(R"("file": "g.obj", "material": "a")"),
+               Contains("2 groups of the file become one body of material \"a\""));
+    CHECK(folder.warnings(R"("file": "g.obj", "material": "c")").empty());
+    CHECK_THAT(folder.warnings(R"("file": "skin.obj", "material": "a")"), !Contains("groups"));
 }

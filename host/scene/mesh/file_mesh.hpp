@@ -21,6 +21,7 @@ struct FileMesh {
     std::vector<std::uint32_t> material = {};
     std::vector<std::string> materials = {};  // names of those that have triangles; "" of triangles before any name
     std::size_t objects = 0;                  // named ones that have triangles
+    std::size_t groups = 0;                   // those that have triangles; ones that share vertices count once
     std::vector<std::string> remarks = {};    // what is wrong with it, though it can be used: "FILE:LINE: ..."
 };
 

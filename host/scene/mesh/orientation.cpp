@@ -231,4 +231,87 @@ Orientation turn_outward(const std::vector<Mesh*>& meshes, const glm::dvec3& eye
     return found;
 }
 
+bool is_closed(const std::vector<Mesh*>& meshes) {
+    Orientation found;
+    Soup soup = soup_of(meshes);
+    return join_parts(soup, found).empty();
+}
+
+namespace {
+
+// How many of the triangles that lie in one place with their reverse belong to sheets. The rest are walls between
+// solids that stand side by side: about such a wall each edge goes on into the solids.
+std::size_t count_sheets(Soup& soup, const std::vector<bool>& paired) {
+    const std::vector<Side> sides = sorted_sides(soup);
+    std::vector<std::pair<std::uint32_t, bool>> edges;  // a triangle at the end of what is paired; whether solids go on
+    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+        std::uint32_t first = 0;
+        std::size_t count = 0;
+        for (; end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high;
+             ++end) {
+            const std::uint32_t t = sides[end].triangle;
+            if (!paired[t]) continue;
+            if (count++ == 0) first = t;
+            soup.parent[soup.root(t)] = soup.root(first);
+        }
+        const std::size_t others = end - begin - count;
+        if (count == 2 || (count > 0 && others > 0)) edges.emplace_back(first, others > 0 && others % 2 == 0);
+    }
+    std::vector<bool> is_wall(paired.size(), false), is_sheet(paired.size(), false);
+    for (const auto& [triangle, goes_on] : edges) (goes_on ? is_wall : is_sheet)[soup.root(triangle)] = true;
+    std::size_t sheets = 0;
+    for (std::uint32_t t = 0; t < paired.size(); ++t)
+        if (paired[t] && (is_sheet[soup.root(t)] || !is_wall[soup.root(t)])) ++sheets;
+    return sheets;
+}
+
+}  // namespace
+
+Pairs drop_reversed_twins(Mesh& mesh, bool may_drop) {
+    Soup soup = soup_of({&mesh});
+    // Corners from the least one on, and whether the triangle goes round the other way.
+    struct Place {
+        glm::uvec3 corners;
+        bool reversed;
+        std::uint32_t triangle;
+    };
+    const auto key = [](const Place& p) {
+        return std::make_tuple(p.corners.x, p.corners.y, p.corners.z, p.reversed, p.triangle);
+    };
+    std::vector<Place> places;
+    for (std::uint32_t i = 0; i < soup.triangles.size(); ++i) {
+        glm::uvec3 t = soup.triangles[i];
+        while (t.x > t.y || t.x > t.z) t = {t.y, t.z, t.x};
+        const bool reversed = t.y > t.z;
+        if (reversed) std::swap(t.y, t.z);
+        places.push_back({t, reversed, i});
+    }
+    std::sort(places.begin(), places.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
+    std::vector<bool> keep(places.size(), false), paired(places.size(), false);
+    Pairs pairs;
+    for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+        std::uint32_t first = places[begin].triangle;
+        for (; end < places.size() && places[end].corners == places[begin].corners; ++end)
+            first = std::min(first, places[end].triangle);
+        keep[first] = true;
+        if (places[begin].reversed != places[end - 1].reversed)
+            for (std::size_t i = begin; i < end; ++i) paired[places[i].triangle] = true;
+    }
+    pairs.dropped = may_drop && std::find(paired.begin(), paired.end(), false) == paired.end();
+    if (!pairs.dropped) {
+        if (std::find(paired.begin(), paired.end(), true) != paired.end()) pairs.paired = count_sheets(soup, paired);
+        return pairs;
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (!keep[i]) continue;
+        mesh.triangles[kept] = mesh.triangles[i];
+        if (!mesh.uv.empty()) mesh.uv[kept] = mesh.uv[i];
+        ++kept;
+    }
+    mesh.triangles.resize(kept);
+    if (!mesh.uv.empty()) mesh.uv.resize(kept);
+    return pairs;
+}
+
 }  // namespace stokes

@@ -21,4 +21,15 @@ struct Orientation {
 // within is negative. Vertices in the same place are one.
 Orientation turn_outward(const std::vector<Mesh*>& meshes, const glm::dvec3& eye_mm);
 
+// Whether triangles pass each edge of the body in both directions equally often.
+bool is_closed(const std::vector<Mesh*>& meshes);
+
+// Where every triangle has one in the same place that faces the other way, keeps one of each such two, if it may. Else
+// paired: the triangles of sheets that have another one so; not those between solids that stand side by side.
+struct Pairs {
+    bool dropped = false;
+    std::size_t paired = 0;
+};
+Pairs drop_reversed_twins(Mesh& mesh, bool may_drop);
+
 }  // namespace stokes

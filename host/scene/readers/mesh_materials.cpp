@@ -72,12 +72,14 @@ std::vector<MaterialPart> read_material_parts(const ObjectReader& where, const F
     return parts;
 }
 
-// Materials and objects of a file that the shape does not tell apart.
+// Materials, objects and groups of a file that the shape does not tell apart.
 void warn_of_one_material(const ObjectReader& where, const std::string& name, const FileMesh& mesh,
                           const Material& material) {
-    const bool one_body = mesh.objects > 1 && medium_of(material).has_value();
+    const std::size_t things = std::max(mesh.objects, mesh.groups);
+    const bool one_body = things > 1 && medium_of(material).has_value();
     if (mesh.materials.size() < 2 && !one_body) return;
-    const std::string objects = mesh.objects > 1 ? fmt::format("{} objects", mesh.objects) : "";
+    const std::string objects =
+        things > 1 ? fmt::format("{} {}", things, mesh.objects >= mesh.groups ? "objects" : "groups") : "";
     const std::string materials = mesh.materials.size() > 1
                                       ? fmt::format("{} materials ({})", mesh.materials.size(), quoted(mesh.materials))
                                       : "";

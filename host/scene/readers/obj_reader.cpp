@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "host/core/error.hpp"
 #include "host/core/text_input.hpp"
@@ -25,6 +26,8 @@ class ObjParser {
             if (keyword == "f" || keyword == "fo") read_face();
             if (keyword == "usemtl") material_name_ = name();
             if (keyword == "o") object_ = true;
+            if (keyword == "g") group_name_ = name();
+            if (is_free_form(keyword) && free_forms_++ == 0) free_form_line_ = scanner_.line();
             scanner_.take_line();
         }
         if (largest_index_ >= static_cast<std::int64_t>(mesh_.positions.size())) {
@@ -34,10 +37,21 @@ class ObjParser {
             throw InputError(file_ + (mesh_.positions.empty() ? ": no triangles" : ": no triangles, only points"));
         finish_uv();
         finish_polygons();
+        mesh_.groups = separate_groups();
+        if (free_forms_ > 0)
+            mesh_.remarks.push_back(
+                fmt::format("{}:{}: {} not read (curv, surf ..), only faces", file_, free_form_line_,
+                            free_forms_ == 1 ? "a free form is" : fmt::format("{} free forms are", free_forms_)));
         return std::move(mesh_);
     }
 
   private:
+    // Statements that draw something; those about them (cstype, deg, parm, end ..) go with these.
+    static bool is_free_form(std::string_view keyword) {
+        constexpr std::array<std::string_view, 7> all = {"curv", "curv2", "surf", "bsp", "bzp", "cdc", "cdp"};
+        return std::find(all.begin(), all.end(), keyword) != all.end();
+    }
+
     [[noreturn]] void fail(std::int64_t line, const std::string& what) const {
         throw InputError(fmt::format("{}:{}: {}", file_, line, what));
     }
@@ -122,7 +136,36 @@ class ObjParser {
         take_material(triangles);
     }
 
+    void take_group(std::size_t triangles) {
+        if (groups_.empty() || groups_[group_] != group_name_) {
+            const auto found = std::find(groups_.begin(), groups_.end(), group_name_);
+            group_ = static_cast<std::size_t>(found - groups_.begin());
+            if (found == groups_.end()) groups_.push_back(group_name_);
+        }
+        group_of_.insert(group_of_.end(), triangles, static_cast<std::uint32_t>(group_));
+    }
+
+    std::size_t separate_groups() const {
+        std::vector<std::uint32_t> parent(groups_.size());
+        std::iota(parent.begin(), parent.end(), 0u);
+        const auto root = [&](std::uint32_t g) {
+            while (parent[g] != g) g = parent[g];
+            return g;
+        };
+        std::vector<std::uint32_t> of_vertex(groups_.size() > 1 ? mesh_.positions.size() : 0, no_group);
+        for (std::size_t i = 0; i < mesh_.triangles.size() && !of_vertex.empty(); ++i)
+            for (int k = 0; k < 3; ++k) {
+                std::uint32_t& of = of_vertex[mesh_.triangles[i][k]];
+                if (of != no_group) parent[root(of)] = root(group_of_[i]);
+                of = group_of_[i];
+            }
+        std::size_t separate = 0;
+        for (std::uint32_t g = 0; g < parent.size(); ++g) separate += parent[g] == g ? 1 : 0;
+        return separate;
+    }
+
     void take_material(std::size_t triangles) {
+        take_group(triangles);
         if (object_) ++mesh_.objects;
         object_ = false;
         if (mesh_.materials.empty() || mesh_.materials[material_] != material_name_) {
@@ -188,6 +231,7 @@ class ObjParser {
         if (mesh_.uv_fault.empty()) mesh_.uv_fault = fmt::format("{}:{}: {}", file_, line, reason);
     }
 
+    static constexpr std::uint32_t no_group = std::numeric_limits<std::uint32_t>::max();
     static constexpr std::int64_t no_uv = std::numeric_limits<std::int64_t>::max();
 
     TextScanner scanner_;
@@ -197,6 +241,11 @@ class ObjParser {
     std::string material_name_;    // of the faces that follow
     std::size_t material_ = 0;     // its index, once a face had it
     bool object_ = false;          // one began that has no face yet
+    std::string group_name_;       // of the faces that follow
+    std::size_t group_ = 0;        // its index, once a face had it
+    std::vector<std::string> groups_;
+    std::vector<std::uint32_t> group_of_;  // of each triangle
+    std::int64_t free_forms_ = 0, free_form_line_ = 0;
     std::vector<glm::dvec2> uvs_;
     std::vector<std::array<std::uint32_t, 3>> uv_triangles_;  // indices of uvs_, until one is missing
     std::int64_t largest_uv_line_ = 0;

@@ -72,6 +72,13 @@ void move_beams(const std::vector<JsonCursor>& where, Scene& scene) {
             scene.lights[i].kind);
 }
 
+std::vector<Mesh*> meshes_of(Scene& scene, int body) {
+    std::vector<Mesh*> meshes;
+    for (Shape& shape : scene.shapes)
+        if (shape.body == body) meshes.push_back(&shape.mesh);
+    return meshes;
+}
+
 }  // namespace
 
 int Placement::add(const JsonCursor& where, Shape shape, FileMesh mesh, const glm::dmat4& transform, bool from_file) {
@@ -122,19 +129,59 @@ void Placement::move_to_origin(Placed& placed, Scene& scene) const {
     }
     warn_of_triangles(where, shape.name, flat, "without area");
     warn_of_triangles(where, shape.name, dropped - flat, too_small);
+    settle_reversed_twins(placed, shape, material);
     scene.shapes.push_back(std::move(shape));
 }
 
+// Every face stored a second time, the other way round, is how some programs write sheets that have two sides.
+void Placement::settle_reversed_twins(const Placed& placed, Shape& shape, const Material& material) const {
+    if (!placed.from_file) return;
+    const bool opaque = as_translucent(material) == nullptr;
+    const Pairs pairs = drop_reversed_twins(shape.mesh, opaque && shape.light < 0);
+    if (pairs.dropped) {
+        shape.two_sided = true;
+        warn_at(placed.where, shape.name,
+                fmt::format("each of its faces is there twice, facing both ways: it has {} triangles that look alike "
+                            "from both sides",
+                            shape.mesh.triangles.size()));
+    } else if (pairs.paired > 0) {
+        warn_at(placed.where, shape.name,
+                fmt::format("{} triangles lie in one place with others that face the other way; {}", pairs.paired,
+                            opaque ? "which one is seen is by chance" : "a translucent body has no inside there"));
+    }
+}
+
+// Which shapes are judged together: those of one body, and the open parts of one file, which may close each other. By
+// shape: a body of its group.
+std::vector<int> Placement::orientation_groups(Scene& scene) const {
+    std::vector<int> groups;
+    for (const Shape& shape : scene.shapes) groups.push_back(shape.body);
+    for (std::size_t i = 1; i < shapes_.size(); ++i) {
+        const auto same_file = [&](std::size_t j) {
+            return shapes_[i].from_file && shapes_[j].from_file && scene.shapes[i].body != scene.shapes[j].body &&
+                   shapes_[i].where.path() == shapes_[j].where.path();
+        };
+        const auto open = [&](std::size_t j) { return !is_closed(meshes_of(scene, scene.shapes[j].body)); };
+        for (std::size_t j = 0; j < i; ++j) {
+            if (!same_file(j) || !open(j) || !open(i)) continue;
+            std::replace(groups.begin(), groups.end(), groups[i], groups[j]);
+            break;
+        }
+    }
+    return groups;
+}
+
 void Placement::turn_inside_out(Scene& scene) const {
+    const std::vector<int> groups = orientation_groups(scene);
     std::vector<bool> done(static_cast<std::size_t>(scene.body_count), false);
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
         const Shape& shape = scene.shapes[i];
-        const auto body = static_cast<std::size_t>(shape.body);
-        if (!shapes_[i].from_file || done[body]) continue;
-        done[body] = true;
+        const auto group = static_cast<std::size_t>(groups[i]);
+        if (!shapes_[i].from_file || shape.two_sided || done[group]) continue;
+        done[group] = true;
         std::vector<Mesh*> meshes;
-        for (Shape& part : scene.shapes)
-            if (part.body == shape.body) meshes.push_back(&part.mesh);
+        for (std::size_t j = 0; j < groups.size(); ++j)
+            if (groups[j] == groups[i]) meshes.push_back(&scene.shapes[j].mesh);
         const Orientation found = turn_outward(meshes, scene.camera.position_mm);
         if (found.turned > 0)
             warn_at(shapes_[i].where, shape.name,

@@ -33,6 +33,8 @@ class Placement {
     };
 
     void move_to_origin(Placed& placed, Scene& scene) const;
+    void settle_reversed_twins(const Placed& placed, Shape& shape, const Material& material) const;
+    std::vector<int> orientation_groups(Scene& scene) const;
     void turn_inside_out(Scene& scene) const;
 
     std::vector<Placed> shapes_;

@@ -21,19 +21,20 @@ class PlyBody {
         : header_(header), source_(source), file_(file) {}
 
     FileMesh parse() {
-        for (const PlyElement& element : header_.elements) {
-            if (have_vertices_ && have_faces_) break;
-            element_ = &element;
+        std::size_t read = 0;
+        for (; read < header_.elements.size() && !(have_vertices_ && have_faces_); ++read) {
+            element_ = &header_.elements[read];
             require_room();
-            if (element.name == "vertex") {
+            if (element_->name == "vertex") {
                 read_vertices();
-            } else if (element.name == "face") {
+            } else if (element_->name == "face") {
                 read_faces();
             } else {
                 skip_records();
             }
         }
         check_indices();
+        remark_on_the_rest(read);
         finish_uv();
         if (const auto crossing = cut_polygons(mesh_, fans_); !crossing.empty())
             mesh_.remarks.push_back(
@@ -41,10 +42,35 @@ class PlyBody {
         if (pictures_.size() > 1)
             mesh_.remarks.push_back(fmt::format(
                 "{}: its faces have {} pictures (texnumber); a texture lies on all of them", file_, pictures_.size()));
+        if (materials_.size() > 1)
+            mesh_.remarks.push_back(
+                fmt::format("{}: its faces have {} materials (material_index), which are not told apart", file_,
+                            materials_.size()));
         return std::move(mesh_);
     }
 
   private:
+    // What the file has beside vertices and faces. read: elements that were read so far.
+    void remark_on_the_rest(std::size_t read) {
+        for (const PlyElement& element : header_.elements) {
+            const bool has_faces = element.property("vertex_indices") >= 0 || element.property("vertex_index") >= 0;
+            if (element.count > 0 && element.name != "vertex" && element.name != "face" && has_faces)
+                mesh_.remarks.push_back(
+                    fmt::format("{}: its element {} is not read, only faces", file_, printable(element.name)));
+        }
+        try {
+            for (; read < header_.elements.size(); ++read) {
+                element_ = &header_.elements[read];
+                require_room();
+                skip_records();
+            }
+            if (source_.has_more())
+                mesh_.remarks.push_back(file_ + ": it goes on after all that its header promises, which is not read");
+        } catch (const InputError& error) {
+            mesh_.remarks.emplace_back(error.what());
+        }
+    }
+
     [[noreturn]] void fail(const std::string& what) const {
         const std::string record = fmt::format("{} {}: ", printable(element_->name), record_);
         throw InputError(source_.place(file_, record + what));
@@ -144,7 +170,7 @@ class PlyBody {
         };
         const int indices = std::max(list_of("vertex_indices"), list_of("vertex_index"));
         const int uvs = std::max(list_of("texcoord"), list_of("texcoords"));
-        const int picture = element_->property("texnumber");
+        const int picture = element_->property("texnumber"), material = element_->property("material_index");
         if (indices < 0) throw InputError(file_ + ": element face: expected a list property vertex_indices");
         corner_uv_.there = uvs >= 0;
         mesh_.triangles.reserve(static_cast<std::size_t>(element_->count));
@@ -157,7 +183,9 @@ class PlyBody {
                 } else if (i == uvs) {
                     take_corner_uvs(property);
                 } else if (i == picture && !property.is_list) {
-                    take_picture(take(property.type));
+                    note_number(pictures_, take(property.type));
+                } else if (i == material && !property.is_list) {
+                    note_number(materials_, take(property.type));
                 } else {
                     skip(property);
                 }
@@ -199,10 +227,10 @@ class PlyBody {
         for (std::size_t k = 2; k < corners; ++k) mesh_.uv.push_back({corner(0), corner(k - 1), corner(k)});
     }
 
-    // Faces without a picture have -1.
-    void take_picture(double number) {
-        const bool is_new = std::find(pictures_.begin(), pictures_.end(), number) == pictures_.end();
-        if (number >= 0.0 && is_new && pictures_.size() < 1000) pictures_.push_back(number);
+    // Of a picture or a material; faces without one have -1.
+    static void note_number(std::vector<double>& known, double number) {
+        const bool is_new = std::find(known.begin(), known.end(), number) == known.end();
+        if (number >= 0.0 && is_new && known.size() < 1000) known.push_back(number);
     }
 
     std::uint32_t take_index(PlyType type) {
@@ -259,10 +287,10 @@ class PlyBody {
     bool have_vertices_ = false;
     bool have_faces_ = false;
     FileMesh mesh_;
-    std::vector<FanOfMesh> fans_;   // of the polygons
-    std::vector<glm::dvec2> uvs_;   // of the vertices, where they have texture coordinates
-    std::vector<double> face_uvs_;  // of the corners of one face
-    std::vector<double> pictures_;  // numbers of those that faces have
+    std::vector<FanOfMesh> fans_;               // of the polygons
+    std::vector<glm::dvec2> uvs_;               // of the vertices, where they have texture coordinates
+    std::vector<double> face_uvs_;              // of the corners of one face
+    std::vector<double> pictures_, materials_;  // numbers of those that faces have
     UvSource vertex_uv_, corner_uv_;
 };
 

@@ -14,12 +14,16 @@
 
 namespace stokes {
 
+// What a file may end in, also a binary one from an editor.
+inline constexpr std::string_view blanks(" \t\r\n\v\f\0\x1a", 8);
+
 // Values of an ascii body, one token each.
 class AsciiSource {
   public:
     explicit AsciiSource(const TextScanner& body) : scanner_(body) {}
 
     std::size_t bytes_left() const { return scanner_.rest().size(); }
+    bool has_more() const { return scanner_.rest().find_first_not_of(blanks) != std::string_view::npos; }
     std::string place(const std::string& file, const std::string& record) const {
         return fmt::format("{}:{}: {}", file, scanner_.line(), record);
     }
@@ -48,6 +52,7 @@ class BinarySource {
     BinarySource(const TextScanner& body, bool big_endian) : rest_(body.rest()), big_endian_(big_endian) {}
 
     std::size_t bytes_left() const { return rest_.size(); }
+    bool has_more() const { return rest_.find_first_not_of(blanks) != std::string_view::npos; }
     std::string place(const std::string& file, const std::string& record) const { return file + ": " + record; }
     bool take(PlyType type, double& value) {
         switch (type) {
