@@ -34,12 +34,16 @@ bool is_reciprocal_quantity(const std::string& word) {
     return starts_as_one_of(word, {"freq", "energ", "wavenum", "wellenzahl"});
 }
 
+// Those that are not known.
+bool is_other_unit(const std::string& word) {
+    return is_one_of(word, {"hz", "khz", "mhz", "ghz", "phz", "kj", "kcal", "mol", "mev", "kev", "hartree", "rydberg"});
+}
+
 // No wavelength, or in a unit that is not known.
 bool is_other_quantity(const std::string& word) {
-    return is_reciprocal_quantity(word) ||
-           is_one_of(word, {"hz",          "khz",     "mhz",     "ghz",   "phz",    "kj",      "kcal",    "mev",
-                            "kev",         "hartree", "rydberg", "pixel", "index",  "channel", "time",    "seconds",
-                            "temperature", "angle",   "pixels",  "joule", "joules", "fs",      "channels"});
+    return is_reciprocal_quantity(word) || (is_other_unit(word) && word != "mol") ||
+           is_one_of(word, {"pixel", "pixels", "index", "channel", "channels", "time", "seconds", "temperature",
+                            "angle", "joule", "joules", "fs"});
 }
 
 bool any_of(const Text& words, bool (*is)(const std::string&)) { return std::any_of(words.begin(), words.end(), is); }
@@ -61,6 +65,15 @@ std::optional<WavelengthUnit> unit_beside_quantity(const std::string& note) {
         if (unit && *unit != WavelengthUnit::m) return unit;
     }
     return std::nullopt;
+}
+
+// "THz" and "Frequency (THz) R", but not "Integration time (ms)", "Slit (um)" or "Energy: 3 J".
+bool speaks_of_wavelengths(const std::string& text) {
+    const Text words = name_words(text);
+    if (words.empty() || text.find(':') != std::string::npos) return false;
+    if (is_wavelength(words[0]) || is_reciprocal_quantity(words[0])) return true;
+    return std::all_of(words.begin(), words.end(),
+                       [](const std::string& word) { return unit_in(word) || is_other_unit(word); });
 }
 
 class AxisFinder {
@@ -171,10 +184,12 @@ class AxisFinder {
         if (!table_.named && column == 0 && !table_.notes.empty()) above.insert(above.begin(), table_.notes.front());
         bool wavelengths = false;
         for (const std::string& text : above) {
-            const auto unit = unit_in(text);
+            const bool is_name = table_.named && text == table_.columns[column];
+            const auto unit = is_name || speaks_of_wavelengths(text) ? unit_in(text) : std::nullopt;
             if (unit && !(wavelengths && is_reciprocal(*unit))) return unit;
             wavelengths = wavelengths || says_wavelengths(text);
-            if (!wavelengths && other.empty() && says_other_quantity(text)) other = text;
+            const bool of_column = is_name ? !is_setting(text) : speaks_of_wavelengths(text);
+            if (of_column && !wavelengths && other.empty() && says_other_quantity(text)) other = text;
         }
         std::set<WavelengthUnit> noted;
         for (const std::string& note : table_.notes)
@@ -184,24 +199,34 @@ class AxisFinder {
         return std::nullopt;
     }
 
+    // "Temperature: 25", of the measurement.
+    bool is_setting(const std::string& name) const {
+        const auto is_amount = [](const std::string& text) {
+            return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0]));
+        };
+        return name.find(':') != std::string::npos ||
+               std::any_of(table_.columns.begin() + 1, table_.columns.end(), is_amount);
+    }
+
     const CsvTable& table_;
     std::size_t column_;
 };
 
-bool says_percent(const std::string& text) {
-    const Text words = name_words(text);
-    return text.find('%') != std::string::npos || std::any_of(words.begin(), words.end(), [](const std::string& word) {
-               return is_one_of(word, {"percent", "percentage", "percentages", "pct", "prozent"});
-           });
+// "Humidity: 40 %" is no column's.
+bool says_percent(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (const char* sign : {"%", "percent", "pct", "prozent"}) {
+        for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign, at + 1)) {
+            const std::size_t before = at == 0 ? std::string::npos : text.find_last_not_of(' ', at - 1);
+            if (before == std::string::npos || !std::isdigit(static_cast<unsigned char>(text[before]))) return true;
+        }
+    }
+    return false;
 }
 
-// "Humidity: 40 %" says nothing of a column.
-bool is_amount(const std::string& note) {
-    return std::any_of(note.begin(), note.end(), [](char c) { return std::isdigit(static_cast<unsigned char>(c)); });
-}
-
-// Text that speaks of mm as well may be of a conversion.
+// Text that speaks of mm as well may be of a conversion; "4 cm-1" is a resolution.
 bool says_per_cm(const std::string& text) {
+    if (text.rfind("1/", 0) != 0 && !text.empty() && std::isdigit(static_cast<unsigned char>(text[0]))) return false;
     const Text words = name_words(text);
     for (std::size_t i = 0; i < words.size(); ++i)
         if (words[i] == "percm" || (words[i] == "cm" && i > 0 && words[i - 1] == "per"))
@@ -237,7 +262,7 @@ std::string percent_above(const CsvTable& table, std::size_t column) {
     for (const std::string& text : table.headings[column])
         if (says_percent(text)) return text;
     for (const std::string& note : table.notes)
-        if (says_percent(note) && !is_amount(note)) return note;
+        if (says_percent(note)) return note;
     return "";
 }
 

@@ -77,6 +77,10 @@ TEST_CASE("a unit is read from any line above the table") {
         {"v", "# wavelength in um\nx,v\n0.4,1\n0.5,2\n0.8,3\n"},
         {"v", "# Energy (eV) of the lamp's line: 2.3\nwavelength,v\n400,1\n500,2\n800,3\n"},
         {"v", "slit 25 um\nwavelength,v\n400,1\n500,2\n800,3\n"},
+        {"v", "Path (um)\t10\nEnergy of the lamp:\t3\nx\tv\n400\t1\n500\t2\n800\t3\n"},
+        {"2", "Integration Time (sec): 0.1\n>>>>>Begin Spectral Data<<<<<\n400\t1\n500\t2\n800\t3\n"},
+        {"2", "# Temperature: 25\n400 1\n500 2\n800 3\n"},
+        {"v", "Time\t10\nx\tv\n400\t1\n500\t2\n800\t3\n"},
         {"v", "1/cm,v\n25000,1\n20000,2\n12500,3\n"},
         {"%R", "Sample:\tX\nData points\t3\nnm\t%R\n400\t1\n500\t2\n800\t3\n"},
     };
@@ -108,6 +112,8 @@ TEST_CASE("what is in percent, or per centimetre, is found in any line above the
         {"Reflectance in %\nwl;R\n400;1\n", "Reflectance in %"},
         {"# all values in percent\nwl;R\n400;1\n", "all values in percent"},
         {"Humidity: 40 %\nwl;R\n400;1\n", ""},
+        {"Humidity\t40 %\nwl\tR\n400\t1\n", ""},
+        {"R1 in %\nwl\tR\n400\t1\n", "R1 in %"},
         {"wl,R,%T\n400,1,1\n", ""},
     };
     for (const Case& c : percent) {
@@ -125,6 +131,7 @@ TEST_CASE("what is in percent, or per centimetre, is found in any line above the
         {"# absorption in cm-1\nwl;a\n400;1\n", "absorption in cm-1"},
         {"# from cm-1 to mm-1\nwl;a\n400;1\n", ""},
         {"# resolution 4 cm-1\nwavenumber (cm-1);a\n20000;1\n", ""},
+        {"Resolution\t4 cm-1\nwl\ta\n400\t1\n", ""},
         {"nm,mua (mm-1)\n400,1\n", ""},
         {"nm,irradiance (W/cm2)\n400,1\n", ""},
     };
