@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,15 +19,19 @@ namespace stokes {
 
 class RunningStokes {
   public:
-    // ignored: signals that are ignored when it begins.
-    explicit RunningStokes(std::vector<std::string> words, const std::vector<int>& ignored = {}) {
+    // ignored: signals that are ignored when it begins. cache: the folder of the driver's compiled kernels; "": its
+    // own.
+    explicit RunningStokes(std::vector<std::string> words, const std::vector<int>& ignored = {},
+                           const std::string& cache = "") {
         words.insert(words.begin(), stokes_program());
         std::vector<char*> arguments;
         for (std::string& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);
-        child_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
+        const winsize size{24, 80, 0, 0};
+        child_ = ::forkpty(&terminal_, nullptr, nullptr, &size);
         if (child_ < 0) throw std::runtime_error("no terminal to be had");
         if (child_ == 0) {
+            if (!cache.empty()) ::setenv("POCL_CACHE_DIR", cache.c_str(), 1);
             for (const int signal : ignored) std::signal(signal, SIG_IGN);
             ::execv(arguments[0], arguments.data());
             ::_exit(127);
@@ -49,6 +54,8 @@ class RunningStokes {
             if (std::chrono::steady_clock::now() > end || !read_some()) return false;
         return true;
     }
+    // False when the terminal does not take it.
+    bool press_ctrl_c() const { return ::write(terminal_, "\x03", 1) == 1; }
     void send(int signal) const { ::kill(child_, signal); }
     void close_terminal() {
         if (terminal_ >= 0) ::close(terminal_);
