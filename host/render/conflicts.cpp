@@ -87,9 +87,8 @@ void add_tiny(const Scene& scene, double offset_mm, std::vector<std::string>& li
     std::string name;
     double smallest_mm = INFINITY;
     for (const Shape& shape : scene.shapes) {
-        Box box;
-        for (const glm::vec3& p : shape.mesh.positions_mm) box.add(glm::dvec3(p));
-        const glm::dvec3 size = box.high - box.low;
+        const Bounds box = mesh_bounds(shape.mesh);
+        const glm::dvec3 size = box.high_mm - box.low_mm;
         const double largest_mm = std::max({size.x, size.y, size.z});
         if (!(largest_mm < least_offsets * offset_mm)) continue;
         ++tiny;

@@ -44,8 +44,8 @@ std::vector<BodyRecord> body_records(const Scene& scene, const Contacts& contact
         if (contacts.holds[body]) record.flags |= STOKES_BODY_HOLLOW;
         record.first_region = static_cast<std::uint32_t>(regions.size());
         record.region_count = static_cast<std::uint32_t>(contacts.regions[body].size());
-        for (const Box& box : contacts.regions[body]) {
-            const glm::vec3 low(box.low), high(box.high);
+        for (const Bounds& box : contacts.regions[body]) {
+            const glm::vec3 low(box.low_mm), high(box.high_mm);
             regions.push_back({low.x, low.y, low.z, high.x, high.y, high.z});
         }
         if (walkable[body] == BodyKind::closed)

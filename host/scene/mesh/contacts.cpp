@@ -25,11 +25,10 @@ bool has_medium(const Scene& scene, const Shape& shape) {
     return medium_of(scene.materials[static_cast<std::size_t>(shape.material)]).has_value();
 }
 
-Box box_of(const Scene& scene, int body) {
-    Box box;
+Bounds box_of(const Scene& scene, int body) {
+    Bounds box;
     for (const Shape& shape : scene.shapes)
-        if (shape.body == body)
-            for (const glm::vec3& p : shape.mesh.positions_mm) box.add(glm::dvec3(p));
+        if (shape.body == body) box.add(mesh_bounds(shape.mesh));
     return box;
 }
 
@@ -43,11 +42,11 @@ std::vector<bool> bodies_with_medium(const Scene& scene) {
 bool is_solid(const Scene& scene, int body) { return body_topology(scene, body).kind == BodyKind::closed; }
 
 // The triangles whose boxes come near the box of another body.
-std::vector<BodyTriangle> candidates(const Scene& scene, const std::vector<Box>& boxes, double distance_mm) {
+std::vector<BodyTriangle> candidates(const Scene& scene, const std::vector<Bounds>& boxes, double distance_mm) {
     std::vector<BodyTriangle> result;
     std::uint32_t index = 0;
     for (const Shape& shape : scene.shapes) {
-        std::vector<const Box*> near;
+        std::vector<const Bounds*> near;
         for (std::size_t b = 0; b < boxes.size(); ++b)
             if (static_cast<int>(b) != shape.body &&
                 boxes[b].meets(boxes[static_cast<std::size_t>(shape.body)], distance_mm))
@@ -61,7 +60,7 @@ std::vector<BodyTriangle> candidates(const Scene& scene, const std::vector<Box>&
                 triangle.box.add(triangle.corners[static_cast<std::size_t>(k)]);
             }
             if (std::none_of(near.begin(), near.end(),
-                             [&](const Box* box) { return box->meets(triangle.box, distance_mm); }))
+                             [&](const Bounds* box) { return box->meets(triangle.box, distance_mm); }))
                 continue;
             const glm::dvec3 cross =
                 glm::cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
@@ -90,13 +89,13 @@ Contacts::Pair ordered(int a, int b, const std::vector<bool>& medium) {
 }
 
 // The regions of each body; many become one.
-std::vector<std::vector<Box>> few_regions(const std::map<Contacts::Pair, Box>& regions, std::size_t bodies) {
-    std::vector<std::vector<Box>> result(bodies);
+std::vector<std::vector<Bounds>> few_regions(const std::map<Contacts::Pair, Bounds>& regions, std::size_t bodies) {
+    std::vector<std::vector<Bounds>> result(bodies);
     for (const auto& [pair, box] : regions) result[static_cast<std::size_t>(pair.first)].push_back(box);
-    for (std::vector<Box>& boxes : result)
+    for (std::vector<Bounds>& boxes : result)
         if (boxes.size() > most_regions) {
-            Box all;
-            for (const Box& box : boxes) all.add(box);
+            Bounds all;
+            for (const Bounds& box : boxes) all.add(box);
             boxes = {all};
         }
     return result;
@@ -131,14 +130,14 @@ Container container_of(const Scene& scene, const std::vector<glm::dvec3>& points
     Container result;
     double smallest = INFINITY;
     const std::vector<bool> medium = bodies_with_medium(scene);
-    Box all;
+    Bounds all;
     for (const glm::dvec3& p : points) all.add(p);
     for (int body = 0; body < scene.body_count; ++body) {
         if (body == self || !medium[static_cast<std::size_t>(body)]) continue;
-        const Box box = box_of(scene, body);
+        const Bounds box = box_of(scene, body);
         if (!box.meets(all, 0.0) || !is_solid(scene, body)) continue;
         const Within within = within_body(scene, body, points);
-        const glm::dvec3 size = box.high - box.low;
+        const glm::dvec3 size = box.high_mm - box.low_mm;
         if (within == Within::partly) result.part = body;
         if (within == Within::wholly && size.x * size.y * size.z < smallest) {
             smallest = size.x * size.y * size.z;
@@ -158,17 +157,17 @@ Contacts find_contacts(const Scene& scene, double distance_mm) {
     result.holds.assign(bodies, false);
     result.contested.assign(triangle_count(scene), false);
     const std::vector<bool> medium = bodies_with_medium(scene);
-    std::vector<Box> boxes;
+    std::vector<Bounds> boxes;
     for (int body = 0; body < scene.body_count; ++body) boxes.push_back(box_of(scene, body));
     std::vector<BodyTriangle> triangles = candidates(scene, boxes, 2.0 * distance_mm);
     std::set<Contacts::Pair> coincide, cross;
-    std::map<Contacts::Pair, Box> regions;          // of a body, and the other
+    std::map<Contacts::Pair, Bounds> regions;       // of a body, and the other
     std::map<Contacts::Pair, std::set<int>> sides;  // on which a body stands on a plane of the other
     visit_near_pairs(triangles, 2.0 * distance_mm, [&](const BodyTriangle& a, const BodyTriangle& b) {
         const auto of_a = static_cast<std::size_t>(a.body), of_b = static_cast<std::size_t>(b.body);
         result.touches[of_a] = result.touches[of_b] = true;
-        const Box common{glm::max(a.box.low, b.box.low) - 2.0 * distance_mm,
-                         glm::min(a.box.high, b.box.high) + 2.0 * distance_mm};
+        const Bounds common{glm::max(a.box.low_mm, b.box.low_mm) - 2.0 * distance_mm,
+                            glm::min(a.box.high_mm, b.box.high_mm) + 2.0 * distance_mm};
         regions[{a.body, b.body}].add(common);
         regions[{b.body, a.body}].add(common);
         if (share_a_plane(a, b, one_place_share * distance_mm)) {
@@ -189,7 +188,7 @@ Contacts find_contacts(const Scene& scene, double distance_mm) {
     result.coincide.assign(coincide.begin(), coincide.end());
     result.cross.assign(cross.begin(), cross.end());
     for (std::size_t body = 0; body < bodies; ++body) {
-        const bool overlaps = std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
+        const bool overlaps = std::any_of(boxes.begin(), boxes.end(), [&](const Bounds& box) {
             return &box != &boxes[body] && box.meets(boxes[body], -distance_mm);
         });
         if (result.touches[body] || (overlaps && medium[body]))

@@ -13,10 +13,10 @@ namespace stokes {
 
 struct Contacts {
     // By body.
-    std::vector<bool> touches;              // a triangle of another body is as near as the distance, or may be
-    std::vector<std::vector<Box>> regions;  // [mm] together hold the places of those that touch where that is so
-    std::vector<bool> solid;                // of those that touch, cross or may hold something: the surface is closed
-    std::vector<bool> holds;                // a solid one with a medium: surfaces of other bodies may lie within it
+    std::vector<bool> touches;                 // a triangle of another body is as near as the distance, or may be
+    std::vector<std::vector<Bounds>> regions;  // [mm] together hold the places of those that touch where that is so
+    std::vector<bool> solid;  // of those that touch, cross or may hold something: the surface is closed
+    std::vector<bool> holds;  // a solid one with a medium: surfaces of other bodies may lie within it
     // By triangle, in the order of the scene's shapes: one of another body may lie in its plane.
     std::vector<bool> contested;
 

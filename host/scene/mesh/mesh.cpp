@@ -47,11 +47,8 @@ void drop_unused_vertices(Mesh& mesh) {
 }  // namespace
 
 Bounds mesh_bounds(const Mesh& mesh) {
-    Bounds bounds{glm::dvec3(mesh.positions_mm.front()), glm::dvec3(mesh.positions_mm.front())};
-    for (const glm::vec3& p : mesh.positions_mm) {
-        bounds.low_mm = glm::min(bounds.low_mm, glm::dvec3(p));
-        bounds.high_mm = glm::max(bounds.high_mm, glm::dvec3(p));
-    }
+    Bounds bounds;
+    for (const glm::vec3& p : mesh.positions_mm) bounds.add(glm::dvec3(p));
     return bounds;
 }
 

@@ -1,6 +1,7 @@
 // What can be done with a triangle mesh: measure it, move it, clean it.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <vector>
@@ -10,11 +11,25 @@
 namespace stokes {
 
 struct Bounds {
-    glm::dvec3 low_mm;
-    glm::dvec3 high_mm;
+    glm::dvec3 low_mm{INFINITY};  // empty until something is added
+    glm::dvec3 high_mm{-INFINITY};
+
+    void add(const glm::dvec3& p) {
+        low_mm = glm::min(low_mm, p);
+        high_mm = glm::max(high_mm, p);
+    }
+    void add(const Bounds& other) {
+        low_mm = glm::min(low_mm, other.low_mm);
+        high_mm = glm::max(high_mm, other.high_mm);
+    }
+    // Whether two come within a distance of one another; negative: whether they overlap by more than that.
+    bool meets(const Bounds& other, double distance_mm) const {
+        return glm::all(glm::lessThanEqual(low_mm - distance_mm, other.high_mm)) &&
+               glm::all(glm::lessThanEqual(other.low_mm - distance_mm, high_mm));
+    }
 };
 
-// Of the vertices; the mesh has at least one.
+// Of the vertices.
 Bounds mesh_bounds(const Mesh& mesh);
 // A triangle's area times its normal [mm^2].
 inline glm::dvec3 area_vector_mm2(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {

@@ -23,7 +23,7 @@ struct Part {
     std::vector<std::uint32_t> triangles;
     bool closed = true;
     double volume_mm3 = 0.0;
-    Bounds bounds{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    Bounds bounds;
 };
 
 // The meshes as one.

@@ -18,7 +18,7 @@ class BoxTree {
     }
 
     template <class Visit>
-    void visit_near(const Box& box, double distance, const Visit& visit) const {
+    void visit_near(const Bounds& box, double distance, const Visit& visit) const {
         if (nodes_.empty()) return;
         std::vector<std::size_t> open{0};
         while (!open.empty()) {
@@ -36,7 +36,7 @@ class BoxTree {
 
   private:
     struct Node {
-        Box box;
+        Bounds box;
         std::size_t begin = 0, end = 0;     // of the triangles below it
         std::size_t first = 0, second = 0;  // children; second 0: a leaf
     };
@@ -44,7 +44,7 @@ class BoxTree {
     std::size_t build(std::size_t begin, std::size_t end) {
         const std::size_t at = nodes_.size();
         Node node;
-        Box centres;
+        Bounds centres;
         for (std::size_t i = begin; i < end; ++i) {
             node.box.add(triangles_[i].box);
             centres.add(middle(triangles_[i]));
@@ -53,7 +53,7 @@ class BoxTree {
         node.end = end;
         nodes_.push_back(node);
         if (end - begin <= most_in_leaf) return at;
-        const glm::dvec3 size = centres.high - centres.low;
+        const glm::dvec3 size = centres.high_mm - centres.low_mm;
         const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
         const std::size_t half = begin + (end - begin) / 2;
         const auto start = triangles_.begin();
@@ -69,7 +69,7 @@ class BoxTree {
         return at;
     }
 
-    static glm::dvec3 middle(const BodyTriangle& t) { return 0.5 * (t.box.low + t.box.high); }
+    static glm::dvec3 middle(const BodyTriangle& t) { return 0.5 * (t.box.low_mm + t.box.high_mm); }
 
     std::vector<BodyTriangle>& triangles_;
     std::vector<Node> nodes_;

@@ -7,30 +7,14 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "host/scene/mesh/mesh.hpp"
+
 namespace stokes {
-
-struct Box {
-    glm::dvec3 low{INFINITY}, high{-INFINITY};
-
-    void add(const glm::dvec3& p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    void add(const Box& box) {
-        low = glm::min(low, box.low);
-        high = glm::max(high, box.high);
-    }
-    // Whether two boxes come within a distance of one another; negative: whether they overlap by more than that.
-    bool meets(const Box& other, double distance) const {
-        return glm::all(glm::lessThanEqual(low - distance, other.high)) &&
-               glm::all(glm::lessThanEqual(other.low - distance, high));
-    }
-};
 
 // A triangle and what it is part of.
 struct BodyTriangle {
     std::array<glm::dvec3, 3> corners;
-    Box box;
+    Bounds box;
     glm::dvec3 normal{0.0};  // unit length; zero where it has no area
     int body = 0;
     std::uint32_t index = 0;  // in the order of the scene's shapes

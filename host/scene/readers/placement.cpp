@@ -34,12 +34,11 @@ void warn_of_triangles(const JsonCursor& where, const std::string& name, std::si
 
 // Of the vertices that triangles use.
 Bounds bounds_of(const FileMesh& mesh, const glm::dmat4& transform) {
-    Bounds bounds{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    Bounds bounds;
     for (const glm::uvec3& triangle : mesh.triangles)
         for (int k = 0; k < 3; ++k) {
             const glm::dvec3 placed(transform * glm::dvec4(mesh.positions[triangle[k]], 1.0));
-            bounds.low_mm = glm::min(bounds.low_mm, placed);
-            bounds.high_mm = glm::max(bounds.high_mm, placed);
+            bounds.add(placed);
         }
     return bounds;
 }
