@@ -13,8 +13,8 @@ namespace stokes {
 
 namespace {
 
-// A body smaller than so many offsets of rays loses a hundredth of its light and more.
-constexpr double least_offsets = 100.0;
+// Bodies smaller than so many offsets of rays are told of. A box of 40 mm, 200 offsets, lost 0.012 of the light.
+constexpr double least_offsets = 250.0;
 
 bool takes_for_half_space(const Scene& scene, int body) {
     return transport_model(transport_of_body(scene, body)).takes_bodies_for_half_spaces();

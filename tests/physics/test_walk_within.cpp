@@ -34,7 +34,7 @@ Sample escaped_share(const Scene& scene, std::uint32_t passes = 20) {
     Sample sample;
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         const PhotonAccount account = photons.trace(pass);
-        CHECK(account.fates[STOKES_FATE_BEHIND] <= 2);
+        CHECK(account.fates[STOKES_FATE_BEHIND] == 0);
         sample.add(account.energy[3] / account.energy[0]);
     }
     return sample;
